@@ -1,0 +1,24 @@
+# Compile options every target of the project shares: warnings, float rules, sanitizers, build type.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+add_library(heliograph_options INTERFACE)
+target_compile_options(heliograph_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow
+    # Kernels' functions are shared with C++: the same source must round the same way everywhere.
+    -ffp-contract=off)
+if(HELIOGRAPH_WERROR)
+    target_compile_options(heliograph_options INTERFACE -Werror)
+endif()
+if(HELIOGRAPH_SANITIZE)
+    target_compile_options(heliograph_options INTERFACE
+        -fsanitize=${HELIOGRAPH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(heliograph_options INTERFACE -fsanitize=${HELIOGRAPH_SANITIZE})
+endif()
+find_program(HELIOGRAPH_CCACHE ccache)
+if(HELIOGRAPH_CCACHE AND PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${HELIOGRAPH_CCACHE})
+endif()

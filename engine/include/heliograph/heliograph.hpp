@@ -1,0 +1,10 @@
+#pragma once
+/** @file Everything public. */
+#include <heliograph/device.hpp>
+#include <heliograph/error.hpp>
+#include <heliograph/features.hpp>
+#include <heliograph/graph.hpp>
+#include <heliograph/image.hpp>
+#include <heliograph/kernel.hpp>
+#include <heliograph/renderer.hpp>
+#include <heliograph/scene.hpp>

@@ -1,0 +1,63 @@
+#pragma once
+/** @file
+ * Images on the host: files, colour encoding, comparison. Rows run from the top; linear values are
+ * Rec.709 radiance unless said otherwise.
+ */
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace helio {
+
+/** Float image with named channels, interleaved: value(x, y, c) = data[(y * width + x) * channels.size() + c]. */
+struct ImageF {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::string> channels;  ///< e.g. {"R", "G", "B", "depth.Z"}
+    std::vector<float> data;
+    std::map<std::string, std::variant<std::string, double, std::int64_t>> metadata;
+
+    float& at(std::uint32_t x, std::uint32_t y, std::size_t channel) {
+        return data[(std::size_t(y) * width + x) * channels.size() + channel];
+    }
+    float at(std::uint32_t x, std::uint32_t y, std::size_t channel) const {
+        return data[(std::size_t(y) * width + x) * channels.size() + channel];
+    }
+    /** Index of a channel, or -1. */
+    int channel(std::string_view name) const;
+};
+
+/** Reads an image file, values as stored (no colour decoding), integers scaled to 0..1. Throws InputError
+ * naming the file and the fault. */
+ImageF loadImage(const std::filesystem::path& file);
+
+/** Writes an image, whole or not at all (a temporary beside it, synced, then renamed). The extension chooses:
+ * .exr float32 with all channels and metadata; .png 8-bit and .jpg take R, G, B, clamp to 0..1 and
+ * sRGB-encode. Throws InputError for an extension or folder that cannot be written. */
+void saveImage(const std::filesystem::path& file, const ImageF& image);
+
+/** Exact sRGB transfer curve (IEC 61966-2-1), scalar, any sign kept. */
+double srgbEncode(double linear);
+double srgbDecode(double encoded);
+
+/** Difference of two images over R, G, B; pixels with a non-finite channel in either are counted, left out. */
+struct ImageDifference {
+    double mse = 0;
+    double rmse = 0;
+    double relmse = 0;      ///< mean((x - r)^2 / (r^2 + 0.01))
+    double meanRatio = 0;   ///< mean(x) / mean(r)
+    std::uint32_t worstX = 0;
+    std::uint32_t worstY = 0;
+    double worstError = 0;  ///< largest absolute channel difference
+    std::uint64_t nan = 0;  ///< pixels with a NaN in the image
+    std::uint64_t inf = 0;
+};
+/** Compares an image with a reference of the same size. Throws InputError where sizes differ or R, G, B are
+ * missing. */
+ImageDifference compareImages(const ImageF& image, const ImageF& reference);
+
+}  // namespace helio

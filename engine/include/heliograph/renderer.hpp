@@ -1,0 +1,110 @@
+#pragma once
+/** @file The embedding interface: a scene in, an image with its error and its time out. */
+#include <heliograph/device.hpp>
+#include <heliograph/image.hpp>
+#include <heliograph/scene.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace helio {
+
+enum class Pipeline : std::uint8_t { Path, Raster };
+enum class PixelFilter : std::uint8_t { Box, Tent, Gaussian, BlackmanHarris };
+enum class SamplerKind : std::uint8_t { Sobol, Independent };
+
+/** State of a running render, for progress displays. */
+struct Progress {
+    std::string stage;          ///< "load", "compile", "render"
+    double fraction = 0;        ///< 0..1 of the samples
+    std::uint32_t samples = 0;  ///< per pixel, finished
+    double seconds = 0;         ///< rendering so far
+    double raysPerSecond = 0;
+    double relmse = -1;         ///< estimate so far; negative before there is one
+    double secondsLeft = -1;    ///< negative where unknown
+};
+
+struct RenderOptions {
+    std::array<std::uint32_t, 2> size = {1280, 720};  ///< pixels
+    Pipeline pipeline = Pipeline::Path;
+    std::uint32_t samples = 64;  ///< per pixel
+    double maxError = 0;         ///< stop when the upper bound of relMSE is below; 0 never
+    double maxSeconds = 0;       ///< stop after so many rendering seconds; 0 never
+    std::int64_t maxDepth = -1;  ///< scatterings; negative: unlimited (65,536)
+    PixelFilter filter = PixelFilter::Box;
+    SamplerKind sampler = SamplerKind::Sobol;
+    bool nextEventEstimation = true;
+    std::uint32_t seed = 0;
+    std::string camera;  ///< name or index; empty for the first
+    std::optional<Environment> environment;  ///< replaces the scene's
+    bool cullBackFaces = false;
+    bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
+    /** Called between dispatches; return false to cancel: what is done is returned, `cancelled` set. */
+    std::function<bool(const Progress&)> progress;
+};
+
+/** Rays traced, by kind. */
+struct RayCounts {
+    std::uint64_t camera = 0, bounce = 0, shadow = 0;
+};
+/** Estimated relMSE of the image with a 95 % interval. */
+struct ErrorEstimate {
+    double relmse = 0, low = 0, high = 0;
+    bool reliable = false;
+};
+
+/** What a render returns: the image and every number about it (contract: statistics). */
+struct RenderResult {
+    ImageF image;  ///< linear; R G B and the auxiliary channels
+    ErrorEstimate error;
+    double seconds = 0;  ///< rendering; set-up apart
+    double setupSeconds = 0, setupCpuSeconds = 0, renderCpuSeconds = 0;
+    std::uint32_t samples = 0;
+    RayCounts rays;
+    std::uint64_t nanCount = 0, truncatedPaths = 0;
+    std::uint64_t hostBytes = 0, deviceBytes = 0;  ///< peaks
+    struct PassTime {
+        std::string name;
+        double milliseconds = 0;
+    };
+    std::vector<PassTime> passes;
+    std::vector<std::string> features;
+    std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why
+    std::vector<std::string> warnings;
+    bool cancelled = false;
+    std::string scene, device, version;
+    std::uint32_t seed = 0;
+    /** The contract's statistics as JSON text. */
+    std::string json() const;
+};
+
+/** Renders scenes on one device. Keeps what a later render can use again. */
+class Renderer {
+public:
+    explicit Renderer(const DeviceOptions& options = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    Device& device();
+    /** Renders. Throws InputError, DeviceError. */
+    RenderResult render(const Scene& scene, const RenderOptions& options = {});
+    /** Graphviz of the last render's main plan. */
+    std::string graphviz() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/** Saves a result's image; see saveImage. Metadata as the contract says. */
+void save(const std::filesystem::path& file, const RenderResult& result);
+
+}  // namespace helio

@@ -1,0 +1,196 @@
+#pragma once
+/** @file
+ * The scene model: what importers fill and applications build in code. Right-handed, +Y up, metres unless
+ * the scene says otherwise; counter-clockwise is front; cameras look along their node's -Z. Angles are
+ * radians; colours are linear Rec.709; radiance is W/(sr m^2) per channel. See the project's contract.
+ */
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace helio {
+
+enum class Wrap : std::uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+enum class Filter : std::uint8_t { Nearest, Linear };
+
+/** Decoded pixels shared by textures. 8 or 16 bits per channel are stored as in the file (encoded); floats
+ * are linear. Always 4 channels, rows from the top. */
+struct TextureImage {
+    std::string name;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> texels;
+};
+
+struct Texture {
+    std::string name;
+    int image = -1;  ///< into Scene::images
+    Wrap wrapU = Wrap::Repeat;
+    Wrap wrapV = Wrap::Repeat;
+    Filter magFilter = Filter::Linear;
+    Filter minFilter = Filter::Linear;
+    bool useMipmaps = true;
+};
+
+/** A material's use of a texture. */
+struct TextureUse {
+    int texture = -1;  ///< into Scene::textures; -1 for none
+    int texcoord = 0;  ///< which UV set
+    glm::mat3 transform{1.0f};  ///< applied to (u, v, 1)
+    explicit operator bool() const { return texture >= 0; }
+};
+
+enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
+
+/** The glTF 2.0 metallic-roughness material. Defaults are glTF's. */
+struct Material {
+    std::string name;
+    glm::vec4 baseColor{1.0f};
+    TextureUse baseColorTexture;  ///< sRGB
+    float metallic = 1.0f;
+    float roughness = 1.0f;
+    TextureUse metallicRoughnessTexture;  ///< G roughness, B metallic, linear
+    TextureUse normalTexture;
+    float normalScale = 1.0f;
+    TextureUse occlusionTexture;
+    float occlusionStrength = 1.0f;
+    glm::vec3 emission{0.0f};  ///< radiance: emissive factor times strength
+    TextureUse emissiveTexture;  ///< sRGB
+    float specular = 1.0f;  ///< KHR_materials_specular factor; 0 with metallic 0 is exactly Lambertian
+    TextureUse specularTexture;
+    glm::vec3 specularColor{1.0f};
+    TextureUse specularColorTexture;
+    float ior = 1.5f;
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    float alphaCutoff = 0.5f;
+    bool doubleSided = false;  ///< emits from both faces
+    bool unlit = false;
+    /** What the file asked for that the model cannot hold yet, e.g. "KHR_materials_sheen". */
+    std::vector<std::string> unsupported;
+};
+
+/** Triangles with one material. Attributes are empty or one per position. */
+struct Primitive {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;    ///< unit, or empty: flat-shaded
+    std::vector<glm::vec4> tangents;   ///< w is the bitangent's sign
+    std::vector<std::vector<glm::vec2>> texcoords;  ///< per set
+    std::vector<glm::vec4> colors;     ///< linear, multiplies the base colour
+    std::vector<std::uint32_t> indices;  ///< 3 per triangle; always filled
+    int material = -1;                 ///< into Scene::materials; -1 for glTF's default material
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+struct Camera {
+    std::string name;
+    bool perspective = true;
+    float yfov = 0.6911112f;  ///< vertical field of view
+    float aspectRatio = 0;    ///< 0: the image's
+    float ymag = 1;           ///< orthographic half height
+    float znear = 0.01f;
+    float zfar = std::numeric_limits<float>::infinity();
+};
+
+struct PunctualLight {
+    enum class Type : std::uint8_t { Point, Spot, Directional };
+    std::string name;
+    Type type = Type::Point;
+    glm::vec3 intensity{1.0f};  ///< colour times intensity: W/sr, W/m^2 for directional
+    float range = 0;            ///< 0: unlimited
+    float innerConeAngle = 0;
+    float outerConeAngle = 0.7853982f;
+};
+
+/** A node of the hierarchy. The local transform is `matrix` where given, else translation, rotation, scale. */
+struct Node {
+    std::string name;
+    std::vector<int> children;
+    std::optional<glm::mat4> matrix;
+    glm::vec3 translation{0.0f};
+    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+    glm::vec3 scale{1.0f};
+    int mesh = -1;
+    int camera = -1;
+    int light = -1;
+    glm::dmat4 localTransform() const;
+};
+
+/** Light from everywhere that geometry does not cover. */
+struct Environment {
+    glm::vec3 radiance{0.0f};  ///< constant, or multiplies the image
+    int image = -1;            ///< lat-long, into Scene::images; -1 for constant
+};
+
+/** A mesh placed in the world: one per node that holds a mesh, in depth-first order from Scene::roots. Its
+ * index is the instance id of outputs; triangle ids count a mesh's triangles over its primitives in order. */
+struct Instance {
+    int node = -1;
+    int mesh = -1;
+    glm::dmat4 transform{1.0};  ///< object to world
+};
+struct PlacedCamera {
+    int node = -1;
+    int camera = -1;
+    glm::dmat4 transform{1.0};
+};
+struct PlacedLight {
+    int node = -1;
+    int light = -1;
+    glm::dmat4 transform{1.0};
+};
+
+struct Scene {
+    std::string name;  ///< as reported: file name or sample:NAME
+    std::vector<TextureImage> images;
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Camera> cameras;
+    std::vector<PunctualLight> lights;
+    std::vector<Node> nodes;
+    std::vector<int> roots;  ///< nodes of the shown scene
+    std::optional<Environment> environment;
+    /** What the importer read over, as "WHAT: WHY" pairs for the statistics. */
+    std::vector<std::pair<std::string, std::string>> skipped;
+    std::vector<std::string> warnings;
+
+    /** World placements; throws InputError on a cyclic hierarchy or an index out of range. */
+    std::vector<Instance> instances() const;
+    std::vector<PlacedCamera> placedCameras() const;
+    std::vector<PlacedLight> placedLights() const;
+    /** Bounds of all instances, and number of triangles. */
+    struct Bounds {
+        glm::dvec3 lower{std::numeric_limits<double>::infinity()};
+        glm::dvec3 upper{-std::numeric_limits<double>::infinity()};
+        bool empty() const { return !(lower.x <= upper.x); }
+    };
+    Bounds bounds() const;
+    std::uint64_t triangleCount() const;
+};
+
+/** Loads a file by its extension (.gltf, .glb) or "sample:NAME". Throws InputError. */
+Scene load(const std::string& source);
+/** Names of the built-in samples. */
+std::vector<std::string> sampleNames();
+
+/** The camera to render with: by name, index, or "" for the first placed one, else a frame around the scene:
+ * looking along -Z+(-Y)/2 from outside, 45 degrees vertical, whole bounding sphere in view. */
+PlacedCamera chooseCamera(Scene& scene, const std::string& nameOrIndex);
+
+}  // namespace helio
