@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace helio {
@@ -24,10 +25,12 @@ namespace helio {
 /** Handle of a buffer declared in a graph. */
 struct Buffer {
     std::uint32_t id = ~0u;
+    std::uint32_t graph = 0;  ///< serial of the graph it belongs to; a foreign handle is refused
 };
 /** Handle of an image declared in a graph. */
 struct Image {
     std::uint32_t id = ~0u;
+    std::uint32_t graph = 0;  ///< serial of the graph it belongs to; a foreign handle is refused
 };
 
 struct BufferDescription {
@@ -38,15 +41,32 @@ struct ImageDescription {
     Format format = Format::RGBA32F;
 };
 
-/** One declared access: the shader's name for the binding, and the resource. For a texel buffer, the view's
- * format; Undefined takes RGBA32F, RGBA32UI or RGBA32I after the shader's sampler type. */
+/** Part of a buffer, in bytes. `bytes` 0 reaches to the buffer's end. */
+struct Window {
+    std::uint64_t offset = 0;
+    std::uint64_t bytes = 0;
+};
+
+/** One declared access: the shader's name for the binding (of a block, its block name or instance name), and
+ * the resource. For a texel buffer, the view's format; Undefined takes RGBA32F or RGBA32UI after the shader's
+ * sampler type, or the format qualifier of an imageBuffer. A window binds a part of a buffer, for data larger
+ * than DeviceInfo::maxStorageBufferRange. */
 struct Binding {
-    Binding(std::string name, Buffer buffer, Format view = Format::Undefined)
-        : name(std::move(name)), resource(buffer.id), view(view) {}
-    Binding(std::string name, Image image) : name(std::move(name)), resource(image.id) {}
+    Binding(std::string bindingName, Buffer buffer, Format viewFormat = Format::Undefined)
+        : name(std::move(bindingName)), resource(buffer.id), graph(buffer.graph), view(viewFormat) {}
+    Binding(std::string bindingName, Buffer buffer, Window part, Format viewFormat = Format::Undefined)
+        : name(std::move(bindingName)),
+          resource(buffer.id),
+          graph(buffer.graph),
+          view(viewFormat),
+          window(part) {}
+    Binding(std::string bindingName, Image image)
+        : name(std::move(bindingName)), resource(image.id), graph(image.graph) {}
     std::string name;
     std::uint32_t resource;
+    std::uint32_t graph;
     Format view = Format::Undefined;
+    Window window = {};
 };
 
 /** What a pass records with while a plan executes. */
@@ -88,9 +108,13 @@ public:
     Pass& reads(std::initializer_list<Binding> bindings);
     Pass& reads(const std::vector<Binding>& bindings);
     /** Written in whole or in part without reading what was there; parts not written hold the version
-     * before, so a first write to a transient must be whole (checked in the NaN-poison mode). */
+     * before, so its writers stay alive, and a first write to a transient must be whole (checked in the
+     * NaN-poison mode). */
     Pass& writes(std::initializer_list<Binding> bindings);
     Pass& writes(const std::vector<Binding>& bindings);
+    /** Every byte is written and none read: the version before is not needed, its writers may be culled. */
+    Pass& overwrites(std::initializer_list<Binding> bindings);
+    Pass& overwrites(const std::vector<Binding>& bindings);
     /** Read and written: atomics, accumulation in place. */
     Pass& modifies(std::initializer_list<Binding> bindings);
     Pass& modifies(const std::vector<Binding>& bindings);
@@ -109,8 +133,9 @@ private:
 
 /** One finished or running execution of a plan. Copyable token. */
 struct Execution {
-    std::uint64_t value = 0;  ///< timeline semaphore value
-    std::uint64_t serial = 0;
+    std::uint64_t value = 0;   ///< timeline semaphore value
+    std::uint64_t serial = 0;  ///< count of executions of its plan, from 1
+    std::uint64_t plan = 0;    ///< serial of its plan; a token of another plan is refused
 };
 
 struct PassTiming {
@@ -129,6 +154,9 @@ struct CompileOptions {
     bool poison = false;
     /** Switches aliasing off, to compare. */
     bool alias = true;
+    /** Executions that may be in flight at once. A further execute() first waits for the oldest. Readbacks of
+     * this many executions stay readable; each holds its own host-visible memory. */
+    std::uint32_t executionsInFlight = 2;
 };
 
 /** An immutable compiled graph. Move-only. Imported resources must outlive it. */
@@ -148,6 +176,8 @@ public:
     std::vector<PassTiming> timings(const Execution& execution) const;
 
     AliasingStatistics aliasing() const;
+    /** Names of the passes that run, in order; readbacks are not among them. */
+    std::vector<std::string> passes() const;
     /** Names of passes that no root needed, in order of declaration. */
     std::vector<std::string> culled() const;
     /** The compiled plan, with what was culled and what shares memory. */
@@ -166,7 +196,8 @@ private:
 class ReadbackBytes {
 public:
     ReadbackBytes();
-    /** Waits for the execution and returns the bytes it left. */
+    /** Waits for the execution and returns the bytes it left. Throws GraphError where the plan was destroyed,
+     * the token is another plan's, or CompileOptions::executionsInFlight later executions overwrote them. */
     std::vector<std::byte> wait(const Execution& execution) const;
 
     struct Impl;
@@ -204,7 +235,8 @@ public:
     /** Transients live only within an execution and may share memory. Names need not be unique. */
     Buffer buffer(std::string name, const BufferDescription& description);
     Image image(std::string name, const ImageDescription& description);
-    /** Imports a resource that outlives the plan; writing it makes a root. */
+    /** Imports a resource that outlives the plan; writing it makes a root. The same object imported twice is
+     * one resource with one handle. */
     Buffer import(DeviceBuffer& buffer);
     Image import(DeviceImage& image);
 
@@ -217,21 +249,22 @@ public:
     /** Brings the resource's last version back to the host after each execution: a root. */
     template <typename T>
     Readback<T> readback(Buffer buffer) {
-        return Readback<T>(readbackBytes(buffer.id));
+        return Readback<T>(readbackBytes(buffer.id, buffer.graph));
     }
     template <typename T>
     Readback<T> readback(Image image) {
-        return Readback<T>(readbackBytes(image.id));
+        return Readback<T>(readbackBytes(image.id, image.graph));
     }
 
-    /** Validates, culls, aliases, derives barriers, builds pipelines. Throws GraphError with every problem. */
+    /** Validates, culls, aliases, derives barriers, builds pipelines. Throws GraphError with every problem.
+     * A readback belongs to the last plan compiled from its graph. */
     Plan compile(const CompileOptions& options = {});
 
     struct Impl;
     Impl& impl() const { return *impl_; }
 
 private:
-    ReadbackBytes readbackBytes(std::uint32_t resource);
+    ReadbackBytes readbackBytes(std::uint32_t resource, std::uint32_t graph);
     std::unique_ptr<Impl> impl_;
 };
 
