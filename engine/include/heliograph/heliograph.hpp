@@ -8,3 +8,4 @@
 #include <heliograph/kernel.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
+#include <heliograph/version.hpp>

@@ -1,0 +1,140 @@
+#include "commands.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/features.hpp>
+#include <heliograph/scene.hpp>
+#include <heliograph/version.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace helio::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describeDevice(const DeviceInfo& device) {
+    Json capabilities = Json::array();
+    for (const Capability& capability : device.capabilities) {
+        Json entry = {{"name", capability.name}, {"present", capability.present}, {"required", capability.required}};
+        if (!capability.value.empty()) entry["value"] = capability.value;
+        if (!capability.present) entry["switches_off"] = capability.whenMissing;
+        capabilities.push_back(entry);
+    }
+    Json result = {{"name", device.name},
+                   {"type", device.type},
+                   {"driver", device.driver},
+                   {"driver_version", device.driverVersion},
+                   {"api_version", device.apiVersion},
+                   {"usable", device.usable},
+                   {"memory_bytes", device.memoryBytes},
+                   {"subgroup_size", device.subgroupSize},
+                   {"max_storage_buffer_range", device.maxStorageBufferRange},
+                   {"max_texel_buffer_elements", device.maxTexelBufferElements},
+                   {"capabilities", capabilities}};
+    if (!device.usable) result["refusal"] = device.refusal;
+    return result;
+}
+
+void printDevice(std::size_t index, const DeviceInfo& device) {
+    fmt::print("[{}] {} ({}, {} {}, Vulkan {}){}\n", index, device.name, device.type, device.driver,
+               device.driverVersion, device.apiVersion, device.usable ? "" : "  REFUSED: " + device.refusal);
+    for (const Capability& capability : device.capabilities) {
+        fmt::print("      {:<3} {:<34} {}\n", capability.present ? "yes" : "no", capability.name,
+                   capability.present ? capability.value
+                                      : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
+    }
+}
+
+Json describeScene(const Scene& scene) {
+    const SceneFeatures features(scene);
+    const Scene::Bounds bounds = scene.bounds();
+    Json absent = Json::array(), skipped = Json::array();
+    for (const SceneFeatures::Absent& feature : features.absent()) {
+        absent.push_back({{"what", feature.name}, {"why", feature.why}});
+    }
+    for (const auto& [what, why] : scene.skipped) skipped.push_back({{"what", what}, {"why", why}});
+    Json cameras = Json::array();
+    for (const PlacedCamera& camera : scene.placedCameras()) {
+        cameras.push_back(scene.cameras[std::size_t(camera.camera)].name);
+    }
+    Json result = {{"scene", scene.name},
+                   {"meshes", scene.meshes.size()},
+                   {"instances", scene.instances().size()},
+                   {"triangles", scene.triangleCount()},
+                   {"materials", scene.materials.size()},
+                   {"textures", scene.textures.size()},
+                   {"images", scene.images.size()},
+                   {"cameras", cameras},
+                   {"lights", scene.placedLights().size()},
+                   {"environment", scene.environment.has_value()},
+                   {"needs", features.present()},
+                   {"does_not_need", absent},
+                   {"skipped", skipped},
+                   {"warnings", scene.warnings}};
+    if (!bounds.empty()) {
+        result["bounds"] = {{"lower", {bounds.lower.x, bounds.lower.y, bounds.lower.z}},
+                            {"upper", {bounds.upper.x, bounds.upper.y, bounds.upper.z}}};
+    }
+    return result;
+}
+
+void printScene(const Json& scene) {
+    for (const auto& [key, value] : scene.items()) {
+        if (!value.is_array()) {
+            fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+            continue;
+        }
+        fmt::print("{}:{}\n", key, value.empty() ? " none" : "");
+        for (const Json& entry : value) {
+            if (entry.is_object()) {
+                fmt::print("  {}: {}\n", entry["what"].get<std::string>(), entry["why"].get<std::string>());
+            } else {
+                fmt::print("  {}\n", entry.get<std::string>());
+            }
+        }
+    }
+}
+
+int info(const std::string& source, bool json) {
+    if (!source.empty()) {
+        const Json scene = describeScene(load(source));
+        if (json) {
+            fmt::print("{}\n", scene.dump(2));
+        } else {
+            printScene(scene);
+        }
+        return Done;
+    }
+    const std::vector<DeviceInfo> devices = listDevices();
+    if (json) {
+        Json result = {{"version", std::string(version())}, {"devices", Json::array()}, {"samples", sampleNames()}};
+        for (const DeviceInfo& device : devices) result["devices"].push_back(describeDevice(device));
+        fmt::print("{}\n", result.dump(2));
+        return Done;
+    }
+    fmt::print("Heliograph {}\n", version());
+    for (std::size_t i = 0; i < devices.size(); ++i) printDevice(i, devices[i]);
+    if (devices.empty()) fmt::print("no Vulkan device; install mesa-vulkan-drivers for a CPU device\n");
+    fmt::print("samples: {}\n", fmt::join(sampleNames(), ", "));
+    return Done;
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app, Command& run) {
+    struct Arguments {
+        std::string scene;
+        bool json = false;
+    };
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        app.add_subcommand("info", "List the devices, or what a scene holds, needs and would skip");
+    command->add_option("SCENE", arguments->scene, "A file or sample:NAME");
+    command->add_flag("--json", arguments->json, "Print JSON");
+    command->callback([arguments, &run] { run = [arguments] { return info(arguments->scene, arguments->json); }; });
+}
+
+}  // namespace helio::cli

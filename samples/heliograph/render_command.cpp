@@ -1,0 +1,229 @@
+#include "commands.hpp"
+#include "progress_display.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/renderer.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <csignal>
+#include <fstream>
+#include <memory>
+
+namespace helio::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct RenderArguments {
+    std::string scene;
+    std::vector<std::string> outputs;
+    std::string size = "1280x720";
+    std::string environment;
+    std::string stats, graph;
+    std::string device = "auto";
+    bool noNextEvent = false, validate = false, quiet = false;
+    RenderOptions options;
+};
+
+/** Parses the whole text as a number, or throws the usage error. */
+template <typename T>
+T parseNumber(std::string_view text, const std::string& option, const std::string& expected) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) {
+        throw CLI::ValidationError(option, fmt::format("'{}' is not {}", text, expected));
+    }
+    return value;
+}
+
+std::array<std::uint32_t, 2> parseSize(const std::string& text) {
+    const std::size_t cross = text.find('x');
+    const std::string expected = "a size such as 1280x720";
+    if (cross == std::string::npos) throw CLI::ValidationError("--size", "'" + text + "' is not " + expected);
+    const std::string_view view(text);
+    const std::array<std::uint32_t, 2> size = {
+        parseNumber<std::uint32_t>(view.substr(0, cross), "--size", expected),
+        parseNumber<std::uint32_t>(view.substr(cross + 1), "--size", expected)};
+    if (size[0] == 0 || size[1] == 0 || std::uint64_t(size[0]) * size[1] > 1u << 28) {
+        throw CLI::ValidationError("--size", "'" + text + "' is outside 1x1 to 2^28 pixels");
+    }
+    return size;
+}
+
+/** R,G,B: a constant radiance. */
+Environment parseEnvironment(const std::string& text) {
+    Environment environment;
+    std::string_view rest(text);
+    for (int channel = 0; channel < 3; ++channel) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string_view::npos) != (channel == 2)) {
+            throw CLI::ValidationError("--environment", "'" + text + "' is not R,G,B; image environments are not there yet");
+        }
+        const float value = parseNumber<float>(rest.substr(0, comma), "--environment",
+                                               "R,G,B; image environments are not there yet");
+        if (!(value >= 0) || value > 1e30f) {
+            throw CLI::ValidationError("--environment", "'" + text + "' is not a radiance of 0 to 1e30");
+        }
+        environment.radiance[channel] = value;
+        rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+    }
+    return environment;
+}
+
+/** Refuses, before any work, an output that could not be written after it. */
+void checkOutput(const std::filesystem::path& file, bool image) {
+    if (image) {
+        std::string extension = file.extension().string();
+        for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+        if (extension != ".exr" && extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
+            throw InputError(file.string(), "", "unknown image type '" + extension + "'", "use .exr, .png or .jpg");
+        }
+    }
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder)) {
+        throw InputError(file.string(), "", "the folder does not exist", "create '" + folder.string() + "' first");
+    }
+    if (std::filesystem::is_directory(file)) {
+        throw InputError(file.string(), "", "is a folder", "name a file");
+    }
+}
+
+/** Writes text whole or not at all. */
+void writeText(const std::filesystem::path& file, const std::string& text) {
+    std::filesystem::path partial = file;
+    partial += ".partial";
+    {
+        std::ofstream stream(partial, std::ios::binary);
+        stream << text;
+        stream.flush();
+        if (!stream) throw InputError(file.string(), "", "cannot be written", "check the folder's permissions and space");
+    }
+    std::filesystem::rename(partial, file);
+}
+
+void printSummary(const RenderArguments& arguments, const RenderResult& result) {
+    const std::string error = result.error.reliable
+                                  ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})", result.error.relmse,
+                                                result.error.low, result.error.high)
+                                  : fmt::format("{:.3g} (not reliable)", result.error.relmse);
+    for (const std::string& output : arguments.outputs) fmt::print("wrote {}\n", output);
+    if (arguments.outputs.empty()) fmt::print("no -o FILE was given: no image was written\n");
+    fmt::print("device   {}\n", result.device);
+    fmt::print("time     {:.3f} s rendering, {:.3f} s set-up\n", result.seconds, result.setupSeconds);
+    fmt::print("samples  {} per pixel, {}x{} pixels\n", result.samples, result.image.width, result.image.height);
+    if (arguments.options.pipeline == Pipeline::Path) {
+        const RayCounts& rays = result.rays;
+        const double total = double(rays.camera + rays.bounce + rays.shadow);
+        fmt::print("rays     {:.3g} M, {:.2f} M/s\n", total * 1e-6, result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
+        fmt::print("error    relMSE {}\n", error);
+    }
+    for (const auto& [what, why] : result.skipped) fmt::print("skipped  {}: {}\n", what, why);
+}
+
+int render(RenderArguments& arguments) {
+    RenderOptions& options = arguments.options;
+    options.size = parseSize(arguments.size);
+    options.nextEventEstimation = !arguments.noNextEvent;
+    if (!arguments.environment.empty()) options.environment = parseEnvironment(arguments.environment);
+    for (const std::string& output : arguments.outputs) checkOutput(output, true);
+    for (const std::string& output : {arguments.stats, arguments.graph}) {
+        if (!output.empty()) checkOutput(output, false);
+    }
+
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    ProgressDisplay display(arguments.quiet);
+    options.progress = [&](const Progress& progress) {
+        display.update(progress);
+        return interrupted == 0;
+    };
+
+    const Scene scene = load(arguments.scene);
+    DeviceOptions device;
+    device.device = arguments.device;
+    device.validation = arguments.validate;
+    Renderer renderer(device);
+    const RenderResult result = renderer.render(scene, options);
+    display.finish();
+
+    for (const std::string& output : arguments.outputs) save(output, result);
+    if (!arguments.stats.empty()) writeText(arguments.stats, result.json() + "\n");
+    if (!arguments.graph.empty()) writeText(arguments.graph, renderer.graphviz());
+    for (const std::string& warning : result.warnings) fmt::print(stderr, "heliograph: warning: {}\n", warning);
+    if (!arguments.quiet) printSummary(arguments, result);
+    if (arguments.validate) {
+        const std::vector<std::string> messages = renderer.device().validationMessages();
+        for (const std::string& message : messages) fmt::print(stderr, "heliograph: validation: {}\n", message);
+        if (!messages.empty()) throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
+    }
+    return result.cancelled && interrupted != 0 ? Interrupted : Done;
+}
+
+template <typename Enum>
+CLI::Option* addChoice(CLI::App* command, const std::string& name, Enum& value,
+                       const std::vector<std::pair<std::string, Enum>>& choices, const std::string& help) {
+    return command->add_option_function<std::string>(
+        name,
+        [&value, choices, name](const std::string& text) {
+            std::string known;
+            for (const auto& [key, choice] : choices) {
+                if (key == text) {
+                    value = choice;
+                    return;
+                }
+                known += (known.empty() ? "" : ", ") + key;
+            }
+            throw CLI::ValidationError(name, "'" + text + "' is not one of " + known);
+        },
+        help);
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app, Command& run) {
+    auto arguments = std::make_shared<RenderArguments>();
+    RenderOptions& options = arguments->options;
+    CLI::App* command = app.add_subcommand("render", "Render a scene");
+    command->add_option("SCENE", arguments->scene, "A .gltf or .glb file, or sample:NAME (see heliograph info)")
+        ->required();
+    command->add_option("-o,--output", arguments->outputs,
+                        "Image to write, may be repeated: .exr linear with every channel, .png or .jpg sRGB")
+        ->allow_extra_args(false);
+    addChoice<Pipeline>(command, "--pipeline", options.pipeline,
+                        {{"path", Pipeline::Path}, {"raster", Pipeline::Raster}},
+                        "path (default): unbiased path tracing; raster: z-buffer, direct light without shadows");
+    command->add_option("--size", arguments->size, "Pixels, WxH; the vertical field of view is kept")->capture_default_str();
+    command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
+    command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
+    command->add_option("--spp", options.samples, "Samples per pixel")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
+    command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")->check(CLI::PositiveNumber);
+    command->add_option("--max-error", options.maxError, "Stop when the upper bound of the relMSE is below this")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--max-depth", options.maxDepth,
+                        "Scatterings at most: 0 emission only, 1 direct light; default unlimited (65536)")
+        ->check(CLI::Range(0, 65536));
+    addChoice<PixelFilter>(command, "--filter", options.filter,
+                           {{"box", PixelFilter::Box},
+                            {"tent", PixelFilter::Tent},
+                            {"gaussian", PixelFilter::Gaussian},
+                            {"blackman-harris", PixelFilter::BlackmanHarris}},
+                           "Pixel filter: box (default), tent, gaussian, blackman-harris");
+    addChoice<SamplerKind>(command, "--sampler", options.sampler,
+                           {{"sobol", SamplerKind::Sobol}, {"independent", SamplerKind::Independent}},
+                           "sobol (default): Owen-scrambled; independent");
+    command->add_flag("--no-nee", arguments->noNextEvent, "Trace without next-event estimation");
+    addChoice<bool>(command, "--cull", options.cullBackFaces, {{"none", false}, {"back", true}},
+                    "none (default) or back: faces the raster pipeline leaves out");
+    command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
+    command->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
+        ->capture_default_str();
+    command->add_option("--stats", arguments->stats, "Write the statistics as JSON");
+    command->add_option("--graph", arguments->graph, "Write the render graph for Graphviz");
+    command->add_flag("--validate", arguments->validate, "Run under Vulkan validation; a message is a failure");
+    command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
+    command->callback([arguments, &run] { run = [arguments] { return render(*arguments); }; });
+}
+
+}  // namespace helio::cli
