@@ -1,4 +1,5 @@
 # Builds and runs samples/embedding from a copy outside the project, in a clean scratch folder.
+cmake_minimum_required(VERSION 3.25)
 #   MODE=install: against `cmake --install` of BUILD_DIR    MODE=subdirectory: by add_subdirectory(SOURCE_DIR)
 function(run)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)

@@ -1,4 +1,5 @@
 # Dependencies point down only: a room's sources include nothing of a room that is not listed for it.
+cmake_minimum_required(VERSION 3.25)
 set(may_core core)
 set(may_gpu core gpu)
 set(may_shader core gpu shader)
