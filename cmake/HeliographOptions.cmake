@@ -22,3 +22,15 @@ find_program(HELIOGRAPH_CCACHE ccache)
 if(HELIOGRAPH_CCACHE AND PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${HELIOGRAPH_CCACHE})
 endif()
+
+# helio_shared_sources(file...): marks sources that include engine/core/shared.hpp. Unsuffixed literals are floats
+# there, as in GLSL.
+function(helio_shared_sources)
+    foreach(source ${ARGN})
+        cmake_path(ABSOLUTE_PATH source)
+        # A source's properties count in the directory that defines its target: here for tests, the root for
+        # the library.
+        set_property(SOURCE ${source} DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}
+            APPEND PROPERTY COMPILE_OPTIONS -fsingle-precision-constant)
+    endforeach()
+endfunction()
