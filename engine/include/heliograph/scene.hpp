@@ -170,11 +170,13 @@ struct Scene {
     std::vector<std::pair<std::string, std::string>> skipped;
     std::vector<std::string> warnings;
 
-    /** World placements; throws InputError on a cyclic hierarchy or an index out of range. */
+    /** World placements, computed in double, depth first from the roots, parents before children. Throw
+     * InputError for a node reached twice (a cycle or two parents) or an index out of range. */
     std::vector<Instance> instances() const;
     std::vector<PlacedCamera> placedCameras() const;
     std::vector<PlacedLight> placedLights() const;
-    /** Bounds of all instances, and number of triangles. */
+    /** World bounds of all instances' finite vertices (those that indices use; every index must be in range),
+     * and number of triangles with every instance counted. */
     struct Bounds {
         glm::dvec3 lower{std::numeric_limits<double>::infinity()};
         glm::dvec3 upper{-std::numeric_limits<double>::infinity()};
@@ -189,8 +191,18 @@ Scene load(const std::string& source);
 /** Names of the built-in samples. */
 std::vector<std::string> sampleNames();
 
-/** The camera to render with: by name, index, or "" for the first placed one, else a frame around the scene:
- * looking along -Z+(-Y)/2 from outside, 45 degrees vertical, whole bounding sphere in view. */
-PlacedCamera chooseCamera(Scene& scene, const std::string& nameOrIndex);
+/**
+ * The camera to render with. `nameOrIndex` is the name of a placed camera or of its node, else an index into
+ * Scene::placedCameras(); "" takes the first placed one. Throws InputError that lists the cameras.
+ *
+ * A scene without a placed camera is framed, for "": with c the centre of Scene::bounds() and r half its diagonal,
+ * the camera stands at c - d f and looks along f = (0, -1/2, -1) / |(0, -1/2, -1)| with +X to the right; vertical
+ * field of view 45 degrees, near plane d / 100. d = r / sin(h), where h is half the smaller of the vertical and the
+ * horizontal field of view at `aspect` (width over height): the bounding sphere touches the image's nearer edges.
+ * r is at least 2^-22 |c|, what single precision resolves there, and 1 for a scene that is a single point at the
+ * origin or has no triangles (c is then the origin). The camera is appended to scene.cameras as "heliograph.frame"
+ * (once; later calls overwrite it) and has node -1.
+ */
+PlacedCamera chooseCamera(Scene& scene, const std::string& nameOrIndex, double aspect = 1.0);
 
 }  // namespace helio

@@ -1,0 +1,160 @@
+#include <heliograph/error.hpp>
+#include <heliograph/scene.hpp>
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace helio {
+namespace {
+
+bool inRange(int index, std::size_t size) {
+    return index >= 0 && std::size_t(index) < size;
+}
+
+void checkReference(const Scene& scene, int node, const char* what, int index, std::size_t size) {
+    if (index < 0 || std::size_t(index) < size) return;
+    throw InputError(scene.name, fmt::format("node {}", node),
+                     fmt::format("its {} {} does not exist", what, index),
+                     fmt::format("the scene has {}", size));
+}
+
+/** Visits the nodes under the roots depth first, parents before children, with their world transforms. The
+ * stack is explicit: a chain of a million nodes must not overflow the program's own. */
+template <class Visit>
+void visitNodes(const Scene& scene, Visit&& visit) {
+    struct Entry {
+        int node;
+        int parent;
+        glm::dmat4 parentToWorld;
+    };
+    std::vector<Entry> stack;
+    std::vector<bool> seen(scene.nodes.size(), false);
+    for (auto root = scene.roots.rbegin(); root != scene.roots.rend(); ++root) {
+        stack.push_back({*root, -1, glm::dmat4(1.0)});
+    }
+    while (!stack.empty()) {
+        const Entry entry = stack.back();
+        stack.pop_back();
+        if (!inRange(entry.node, scene.nodes.size())) {
+            throw InputError(scene.name, entry.parent < 0 ? "roots" : fmt::format("node {}", entry.parent),
+                             fmt::format("node {} does not exist", entry.node),
+                             fmt::format("the scene has {} nodes", scene.nodes.size()));
+        }
+        const Node& node = scene.nodes[std::size_t(entry.node)];
+        if (seen[std::size_t(entry.node)]) {
+            throw InputError(scene.name, fmt::format("node {}", entry.node),
+                             "is reached twice: the hierarchy has a cycle or a node with two parents",
+                             "nodes must form trees; place a mesh again with another node");
+        }
+        seen[std::size_t(entry.node)] = true;
+        const glm::dmat4 toWorld = entry.parentToWorld * node.localTransform();
+        visit(entry.node, node, toWorld);
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+            stack.push_back({*child, entry.node, toWorld});
+        }
+    }
+}
+
+bool isFinite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void extend(Scene::Bounds& bounds, const glm::dvec3& point) {
+    bounds.lower = glm::min(bounds.lower, point);
+    bounds.upper = glm::max(bounds.upper, point);
+}
+
+Scene::Bounds objectBounds(const Mesh& mesh) {
+    Scene::Bounds bounds;
+    for (const Primitive& primitive : mesh.primitives) {
+        for (std::uint32_t index : primitive.indices) {
+            const glm::dvec3 point = primitive.positions[index];
+            if (isFinite(point)) extend(bounds, point);
+        }
+    }
+    return bounds;
+}
+
+/** Whether the transformed box lies inside, so that its mesh cannot extend the bounds. */
+bool boxIsInside(const Scene::Bounds& box, const glm::dmat4& transform, const Scene::Bounds& bounds) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 point(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                               corner & 4 ? box.upper.z : box.lower.z, 1.0);
+        const glm::dvec3 world(transform * point);
+        if (!glm::all(glm::greaterThanEqual(world, bounds.lower)) ||
+            !glm::all(glm::lessThanEqual(world, bounds.upper))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+glm::dmat4 Node::localTransform() const {
+    if (matrix) return glm::dmat4(*matrix);
+    // A float quaternion is off unit length by 1e-7; normalised in double the rotation is rigid to 1e-16.
+    const glm::dquat q(rotation);
+    const double length = glm::length(q);
+    const glm::dmat4 rotate = length > 0 ? glm::mat4_cast(q / length) : glm::dmat4(1.0);
+    return glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(translation)) * rotate, glm::dvec3(scale));
+}
+
+std::vector<Instance> Scene::instances() const {
+    std::vector<Instance> placed;
+    visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
+        checkReference(*this, index, "mesh", node.mesh, meshes.size());
+        if (node.mesh >= 0) placed.push_back({index, node.mesh, toWorld});
+    });
+    return placed;
+}
+
+std::vector<PlacedCamera> Scene::placedCameras() const {
+    std::vector<PlacedCamera> placed;
+    visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
+        checkReference(*this, index, "camera", node.camera, cameras.size());
+        if (node.camera >= 0) placed.push_back({index, node.camera, toWorld});
+    });
+    return placed;
+}
+
+std::vector<PlacedLight> Scene::placedLights() const {
+    std::vector<PlacedLight> placed;
+    visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
+        checkReference(*this, index, "light", node.light, lights.size());
+        if (node.light >= 0) placed.push_back({index, node.light, toWorld});
+    });
+    return placed;
+}
+
+Scene::Bounds Scene::bounds() const {
+    std::vector<Bounds> boxes;
+    for (const Mesh& mesh : meshes) boxes.push_back(objectBounds(mesh));
+    Bounds bounds;
+    for (const Instance& instance : instances()) {
+        const Bounds& box = boxes[std::size_t(instance.mesh)];
+        if (box.empty() || boxIsInside(box, instance.transform, bounds)) continue;
+        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
+            for (std::uint32_t index : primitive.indices) {
+                const glm::dvec3 point(instance.transform * glm::dvec4(primitive.positions[index], 1.0));
+                if (isFinite(point)) extend(bounds, point);
+            }
+        }
+    }
+    return bounds;
+}
+
+std::uint64_t Scene::triangleCount() const {
+    std::uint64_t count = 0;
+    for (const Instance& instance : instances()) {
+        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
+            count += primitive.indices.size() / 3;
+        }
+    }
+    return count;
+}
+
+}  // namespace helio
