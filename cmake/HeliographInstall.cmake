@@ -14,3 +14,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/heliographConfigVersion.c
 install(FILES ${PROJECT_BINARY_DIR}/heliographConfig.cmake ${PROJECT_BINARY_DIR}/heliographConfigVersion.cmake
     ${PROJECT_SOURCE_DIR}/cmake/HeliographKernels.cmake
     DESTINATION ${heliograph_package_dir})
+# What helio_add_kernels needs of the source tree, for applications' own kernels.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/kernels DESTINATION ${heliograph_package_dir})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/passes
+    DESTINATION ${heliograph_package_dir}/shader_library
+    FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.h")

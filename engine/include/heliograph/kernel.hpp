@@ -1,11 +1,23 @@
 #pragma once
-/** @file Compute kernels: SPIR-V made at build, with the GLSL it came from for run-time variants. */
+/** @file
+ * Compute kernels: SPIR-V made at build, with the GLSL it came from for run-time variants. The build makes
+ * one `extern const Kernel` per .comp file (helio_add_kernels in cmake/HeliographKernels.cmake):
+ *
+ *     #include <heliograph_kernels/pathtrace.hpp>   // kernels of passes/pathtrace
+ *     graph.compute("trace", helio::shaders::trace);
+ *
+ * SPIR-V is 1.6 (Vulkan 1.3): the device must have the maintenance4 feature enabled, which 1.3 guarantees.
+ */
 #include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace helio {
 
@@ -18,7 +30,7 @@ using SpecConstants = std::map<std::string, SpecValue>;
 struct Kernel {
     std::string_view name;                 ///< "pathtrace/trace"
     std::span<const std::uint32_t> spirv;  ///< Vulkan 1.3 SPIR-V, entry point main
-    std::string_view source;               ///< path in the embedded source tree, "passes/pathtrace/trace.comp"
+    std::string_view source;  ///< path in the embedded source tree, "passes/pathtrace/trace.comp"
 };
 
 /** Preprocessor definitions by name, and generated text for #include "generated.glsl". */
@@ -28,10 +40,28 @@ struct KernelVariant {
 };
 
 /** Compiles the kernel's embedded source again under a variant (cached in the process by source and
- * variant). Throws ShaderError with the compiler's messages, which name file and line. */
+ * variant). The empty variant gives the build's SPIR-V, word for word. Thread-safe. Throws ShaderError with
+ * the compiler's messages, which name file and line. */
 Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant);
 
-/** Compiles GLSL text; `#include "shaders/..."` finds the embedded tree. Throws ShaderError. */
+/** Compiles GLSL text, called `name` in messages; `#include "shaders/..."` finds the embedded tree. Cached
+ * and thread-safe like compileVariant, which takes the result too. Throws ShaderError. */
 Kernel compileKernel(std::string_view name, std::string_view glsl, const KernelVariant& variant = {});
+
+/** A file of the embedded GLSL tree: the path that an #include names, and its text. */
+struct ShaderSource {
+    std::string_view path;
+    std::string_view text;
+};
+
+/** Every embedded file, in order of path: the library's shaders and kernels, then what applications' kernels
+ * brought along. */
+std::vector<ShaderSource> embeddedShaderSources();
+
+/** Adds files to the embedded tree at static initialisation; helio_add_kernels generates these for targets
+ * other than the library. The views must stay valid. A path that is there already keeps its first text. */
+struct RegisterShaderSources {
+    RegisterShaderSources(std::initializer_list<ShaderSource> sources);
+};
 
 }  // namespace helio

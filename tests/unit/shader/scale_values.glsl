@@ -1,0 +1,1 @@
+float scaled(float value, float factor) { return value * factor; }
