@@ -1,0 +1,131 @@
+#include "engine/shader/kernel_cache.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/kernel.hpp>
+
+#include <gtest/gtest.h>
+#include <heliograph_kernels/shader.hpp>
+
+#include <algorithm>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace helio {
+namespace {
+
+const std::string header = "#version 460\n#extension GL_GOOGLE_include_directive : require\n";
+
+std::string messageOf(const std::string& name, const std::string& glsl, const KernelVariant& variant = {}) {
+    try {
+        compileKernel(name, glsl, variant);
+    } catch (const ShaderError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Variant, EmptyOneIsTheBuildsSpirvWordForWord) {
+    for (const Kernel* kernel : {&shaders::scale_values, &shaders::interface}) {
+        const Kernel again = compileVariant(*kernel, {});
+        EXPECT_TRUE(std::ranges::equal(again.spirv, kernel->spirv)) << kernel->name;
+        EXPECT_NE(again.spirv.data(), kernel->spirv.data());
+        EXPECT_EQ(again.name, kernel->name);
+        EXPECT_EQ(again.source, kernel->source);
+    }
+}
+
+TEST(Variant, DefinesAndGeneratedTextReachTheKernel) {
+    const Kernel defined =
+        compileVariant(shaders::scale_values, {.defines = {{"FACTOR", "3.0"}}, .generated = ""});
+    EXPECT_FALSE(std::ranges::equal(defined.spirv, shaders::scale_values.spirv));
+    const Kernel generated =
+        compileVariant(shaders::scale_values, {.defines = {}, .generated = "#define FACTOR 3.0\n"});
+    EXPECT_TRUE(std::ranges::equal(generated.spirv, defined.spirv));
+}
+
+TEST(Variant, OfAKernelCompiledAtRunTime) {
+    const Kernel kernel = compileKernel("runtime", header +
+                                                       "#ifndef N\n#define N 1\n#endif\n"
+                                                       "layout(local_size_x = N) in;\nvoid main() {}\n");
+    const Kernel wide = compileVariant(kernel, {.defines = {{"N", "16"}}, .generated = ""});
+    EXPECT_FALSE(std::ranges::equal(wide.spirv, kernel.spirv));
+    EXPECT_EQ(wide.name, "runtime");
+}
+
+TEST(Compile, ErrorsNameFileAndLine) {
+    EXPECT_EQ(messageOf("broken", header + "void main() {\n    float i = nothing;\n}\n"),
+              "kernel 'broken' does not compile:\nbroken:4: 'nothing' : undeclared identifier");
+    // Definitions and includes before the fault do not shift its line.
+    EXPECT_EQ(messageOf("after_include",
+                        header + "#include \"tests/unit/shader/scale_values.glsl\"\nvoid main() { x; }\n",
+                        {.defines = {{"A", "1"}, {"B", "2"}}, .generated = ""}),
+              "kernel 'after_include' does not compile:\nafter_include:4: 'x' : undeclared identifier");
+}
+
+TEST(Compile, ErrorsInsideAnIncludeNameTheIncludedFile) {
+    const std::string text = header + "#include \"generated.glsl\"\nvoid main() {}\n";
+    const std::string message =
+        messageOf("includer", text, {.defines = {}, .generated = "\nint f() { return y; }\n"});
+    EXPECT_NE(message.find("\ngenerated.glsl:2: 'y' : undeclared identifier"), std::string::npos) << message;
+}
+
+TEST(Compile, MissingIncludeIsNamed) {
+    const std::string message =
+        messageOf("lost", header + "#include \"shaders/none.glsl\"\nvoid main() {}\n");
+    EXPECT_NE(message.find("lost:3: "), std::string::npos) << message;
+    EXPECT_NE(message.find("shaders/none.glsl"), std::string::npos) << message;
+}
+
+TEST(Compile, EndlessIncludeIsAnError) {
+    const std::string text = header + "#include \"generated.glsl\"\nvoid main() {}\n";
+    EXPECT_NE(messageOf("endless", text, {.defines = {}, .generated = "#include \"generated.glsl\"\n"}), "");
+}
+
+TEST(Compile, NoMainIsAnError) {
+    EXPECT_NE(messageOf("headless", header + "int f() { return 1; }\n"), "");
+}
+
+TEST(Compile, KernelWithoutSourceHasNoVariant) {
+    EXPECT_THROW(compileVariant(Kernel{"x", {}, "passes/none.comp"}, {}), ShaderError);
+}
+
+TEST(Cache, SameSourceAndVariantCompileOnce) {
+    const KernelVariant variant{.defines = {{"FACTOR", "5.0"}}, .generated = ""};
+    const KernelCacheStatistics before = kernelCacheStatistics();
+    const Kernel first = compileVariant(shaders::scale_values, variant);
+    const Kernel second = compileVariant(shaders::scale_values, variant);
+    const KernelCacheStatistics after = kernelCacheStatistics();
+    EXPECT_EQ(first.spirv.data(), second.spirv.data());
+    EXPECT_EQ(after.compiled - before.compiled, 1u);
+    EXPECT_EQ(after.reused - before.reused, 1u);
+    compileVariant(shaders::scale_values, {.defines = {{"FACTOR", "5.5"}}, .generated = ""});
+    EXPECT_EQ(kernelCacheStatistics().compiled - before.compiled, 2u);
+}
+
+TEST(Cache, ManyThreadsShareOneCompilation) {
+    constexpr int threads = 8;
+    constexpr int variants = 6;
+    const KernelCacheStatistics before = kernelCacheStatistics();
+    std::vector<std::array<const std::uint32_t*, variants>> words(threads);
+    {
+        std::vector<std::jthread> workers;
+        for (int t = 0; t < threads; ++t) {
+            workers.emplace_back([t, &words] {
+                for (int v = 0; v < variants; ++v) {
+                    const int which = (v + t) % variants;
+                    const std::string factor = std::to_string(100 + which) + ".0";
+                    words[t][which] = compileVariant(shaders::scale_values,
+                                                     {.defines = {{"FACTOR", factor}}, .generated = ""})
+                                          .spirv.data();
+                }
+            });
+        }
+    }
+    for (int t = 1; t < threads; ++t) EXPECT_EQ(words[t], words[0]);
+    EXPECT_EQ(kernelCacheStatistics().compiled - before.compiled, std::uint64_t(variants));
+    EXPECT_EQ(kernelCacheStatistics().reused - before.reused, std::uint64_t((threads - 1) * variants));
+}
+
+}  // namespace
+}  // namespace helio
