@@ -1,0 +1,71 @@
+#include "passes/scene/device_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace helio {
+
+DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& options)
+    : info_(packScene(scene, options)) {
+    hostBytes_ = info_.bytes();
+    const auto& environment = info_.environment;
+    constants_ = {{"HAS_NORMALS", !info_.normals.empty()},
+                  {"HAS_COLORS", !info_.colors.empty()},
+                  {"HAS_BASE_TEXTURES", info_.baseColorTextures},
+                  {"HAS_EMISSION", info_.emission},
+                  {"HAS_EMISSION_TEXTURES", info_.texturedEmission},
+                  {"HAS_FLOAT_TEXTURES", !info_.texelsFloat.empty()},
+                  {"HAS_AREA_LIGHTS", info_.areaLights},
+                  {"HAS_PUNCTUAL_LIGHTS", info_.punctualLights},
+                  {"HAS_ENVIRONMENT", environment != glm::vec3(0.0f)},
+                  {"HAS_TRIANGLE_LIGHTS", info_.triangleLights},
+                  {"LIGHT_COUNT", std::int32_t(info_.lightCount)},
+                  {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
+    const auto upload = [&](std::string_view name, auto& values, Format view) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        if (values.empty()) values.assign(std::max<std::size_t>(1, 16 / sizeof(T)), T{});
+        buffers_.push_back({name, view, makeBuffer(device, fmt::format("scene.{}", name), values)});
+        std::decay_t<decltype(values)>().swap(values);  // the host's copy is not needed any more
+    };
+    upload("uTriangles", info_.triangles, Format::Undefined);
+    upload("uNodes", info_.nodes, Format::Undefined);
+    upload("uNormals", info_.normals, Format::Undefined);
+    upload("uTexcoords", info_.texcoords, Format::Undefined);
+    upload("uColors", info_.colors, Format::Undefined);
+    upload("uMaterials", info_.materials, Format::Undefined);
+    upload("uLights", info_.lights, Format::Undefined);
+    upload("uTextures", info_.textures, Format::Undefined);
+    upload("uTexels8", info_.texels8, Format::R32UI);
+    upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
+    upload("uInstanceFirst", info_.instanceFirst, Format::R32UI);
+}
+
+std::vector<Binding> DeviceScene::bindings(Graph& graph, std::initializer_list<std::string_view> names) {
+    std::vector<Binding> result;
+    for (std::string_view name : names) {
+        const auto found = std::ranges::find(buffers_, name, &Named::name);
+        assert(found != buffers_.end() && "DeviceScene has no buffer of that name");
+        result.emplace_back(std::string(name), graph.import(found->buffer), found->view);
+    }
+    return result;
+}
+
+SpecConstants DeviceScene::constants(std::initializer_list<std::string_view> names) const {
+    SpecConstants result;
+    for (std::string_view name : names) {
+        const auto found = constants_.find(std::string(name));
+        assert(found != constants_.end() && "DeviceScene has no constant of that name");
+        result.insert(*found);
+    }
+    return result;
+}
+
+std::uint64_t DeviceScene::deviceBytes() const {
+    std::uint64_t bytes = 0;
+    for (const Named& named : buffers_) bytes += named.buffer.bytes();
+    return bytes;
+}
+
+}  // namespace helio

@@ -1,0 +1,50 @@
+#pragma once
+/** @file The scene on the device: what packScene made, uploaded, and bound to kernels by name. */
+#include "passes/scene/packed_scene.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/features.hpp>
+#include <heliograph/graph.hpp>
+#include <heliograph/scene.hpp>
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace helio {
+
+/** Uploaded scene. Move-only; must outlive the plans its buffers are imported into. Bindings by the names of
+ * shaders/scene: uTriangles, uNodes, uNormals, uTexcoords, uColors, uMaterials, uLights, uTextures, uTexels8,
+ * uTexelsFloat, uInstanceFirst. A buffer the scene does not need holds one zero texel. */
+class DeviceScene {
+public:
+    DeviceScene(Device& device, const Scene& scene, const PackOptions& options = {});
+
+    /** Imports the named buffers into a graph and returns read bindings for them, to hand to Pass::reads. */
+    std::vector<Binding> bindings(Graph& graph, std::initializer_list<std::string_view> names);
+
+    /** The named specialization constants of shaders/scene/features.glsl, with this scene's values. */
+    SpecConstants constants(std::initializer_list<std::string_view> names) const;
+
+    /** What was packed, without the arrays (they are on the device). */
+    const PackedScene& info() const { return info_; }
+    /** Bytes on the device. */
+    std::uint64_t deviceBytes() const;
+    /** Bytes of the arrays on the host while they were packed. */
+    std::uint64_t hostBytes() const { return hostBytes_; }
+
+private:
+    struct Named {
+        std::string_view name;
+        Format view;
+        DeviceBuffer buffer;
+    };
+    PackedScene info_;
+    std::uint64_t hostBytes_ = 0;
+    std::vector<Named> buffers_;
+    SpecConstants constants_;
+};
+
+}  // namespace helio

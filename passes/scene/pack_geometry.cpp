@@ -1,0 +1,138 @@
+#include "passes/scene/packed_scene.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace helio::pack {
+namespace {
+
+/** Whether any primitive that an instance uses satisfies a condition. */
+template <typename Condition>
+bool anyPrimitive(const Scene& scene, const std::vector<Instance>& instances, Condition condition) {
+    for (const Instance& instance : instances)
+        for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives)
+            if (condition(primitive)) return true;
+    return false;
+}
+
+/** A material's colour textures: those that kernels sample. */
+bool samplesTexture(const Scene& scene, const Primitive& primitive) {
+    if (primitive.material < 0) return false;
+    const Material& material = scene.materials[std::size_t(primitive.material)];
+    return (material.baseColorTexture || material.emissiveTexture) && !primitive.texcoords.empty();
+}
+
+/** Directions that are normal to a surface transform by the cofactor matrix: it is det(M) M^-T, and stays
+ * finite where M is singular. The sign of det(M) is taken out, so that a mirrored object's normals still
+ * point outwards. */
+glm::dmat3 normalMatrix(const glm::dmat3& m) {
+    const glm::dmat3 cofactor(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    return glm::determinant(m) < 0.0 ? -cofactor : cofactor;
+}
+
+glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
+    const double length = glm::length(v);
+    if (length > 0.0 && std::isfinite(length)) return glm::vec3(v / length);
+    const double other = glm::length(fallback);
+    return other > 0.0 ? glm::vec3(fallback / other) : glm::vec3(0.0f, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::vector<Surface>& surfaces) {
+    const std::vector<Instance> instances = scene.instances();
+    std::uint64_t total = 0;
+    for (const Instance& instance : instances) {
+        packed.instanceFirst.push_back(std::uint32_t(total));
+        for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
+            if (primitive.material >= int(scene.materials.size()))
+                throw InputError(scene.name, fmt::format("mesh {}", instance.mesh),
+                                 fmt::format("material {} does not exist", primitive.material),
+                                 "name one of the scene's materials");
+            total += primitive.indices.size() / 3;
+        }
+        // A node's index and a triangle's place in a leaf share a 32-bit stack entry with 8 bits of flags.
+        if (total >= (1u << 24))
+            throw InputError(scene.name, "", fmt::format("more than {} triangles", (1u << 24) - 1),
+                             "reduce the meshes or the number of instances");
+    }
+    packed.instanceFirst.push_back(std::uint32_t(total));
+    packed.triangleCount = std::uint32_t(total);
+
+    const bool anyNormals =
+        anyPrimitive(scene, instances, [](const Primitive& p) { return !p.normals.empty(); });
+    const bool anyColors =
+        anyPrimitive(scene, instances, [](const Primitive& p) { return !p.colors.empty(); });
+    const bool anyTexcoords =
+        anyPrimitive(scene, instances, [&](const Primitive& p) { return samplesTexture(scene, p); });
+
+    std::vector<glm::vec3> positions;
+    positions.reserve(total * 3);
+    surfaces.reserve(total);
+    if (anyNormals) packed.normals.reserve(total * 3);
+    if (anyColors) packed.colors.reserve(total * 3);
+    if (anyTexcoords) packed.texcoords.reserve(total * 3);
+
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const Instance& instance = instances[i];
+        const glm::dmat4& transform = instance.transform;
+        const glm::dmat3 linear(transform);
+        const glm::dmat3 forNormals = normalMatrix(linear);
+        const bool mirrored = glm::determinant(linear) < 0.0;
+        const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+        for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+            const Primitive& primitive = mesh.primitives[p];
+            const std::uint32_t material = primitive.material < 0 ? std::uint32_t(scene.materials.size())
+                                                                  : std::uint32_t(primitive.material);
+            for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+                std::uint32_t index[3] = {primitive.indices[t], primitive.indices[t + 1],
+                                          primitive.indices[t + 2]};
+                // glTF: a transform with negative determinant reverses the winding, so that what was the
+                // front stays the front.
+                if (mirrored) std::swap(index[1], index[2]);
+                glm::dvec3 corner[3];
+                for (int k = 0; k < 3; ++k) {
+                    if (index[k] >= primitive.positions.size())
+                        throw InputError(scene.name, fmt::format("mesh {} primitive {}", instance.mesh, p),
+                                         fmt::format("vertex {} does not exist", index[k]),
+                                         fmt::format("there are {}", primitive.positions.size()));
+                    const glm::dvec4 world = transform * glm::dvec4(primitive.positions[index[k]], 1.0);
+                    const glm::vec3 rounded(world);
+                    if (!std::isfinite(rounded.x) || !std::isfinite(rounded.y) || !std::isfinite(rounded.z))
+                        throw InputError(scene.name, fmt::format("mesh {} primitive {}", instance.mesh, p),
+                                         fmt::format("vertex {} is not finite in world space", index[k]),
+                                         "correct the position or the node's transform");
+                    corner[k] = glm::dvec3(rounded);
+                    positions.push_back(rounded);
+                }
+                surfaces.push_back({std::uint32_t(i), material});
+                if (anyNormals) {
+                    const glm::dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+                    for (std::uint32_t k : index)
+                        packed.normals.push_back(
+                            {primitive.normals.empty()
+                                 ? unitOr(face, glm::dvec3(0, 0, 1))
+                                 : unitOr(forNormals * glm::dvec3(primitive.normals[k]), face),
+                             0.0f});
+                }
+                if (anyTexcoords)
+                    for (std::uint32_t k : index) {
+                        const auto& sets = primitive.texcoords;
+                        const glm::vec2 first = sets.empty() ? glm::vec2(0.0f) : sets[0][k];
+                        packed.texcoords.emplace_back(first, sets.size() > 1 ? sets[1][k] : first);
+                    }
+                if (anyColors)
+                    for (std::uint32_t k : index)
+                        packed.colors.push_back(primitive.colors.empty() ? glm::vec4(1.0f)
+                                                                         : primitive.colors[k]);
+            }
+        }
+    }
+    return positions;
+}
+
+}  // namespace helio::pack

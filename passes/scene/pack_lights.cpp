@@ -1,0 +1,206 @@
+#include "passes/scene/packed_scene.hpp"
+
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace helio::pack {
+namespace {
+
+struct Candidate {
+    LightKind kind = LightKind::Triangle;
+    double weight = 0;  ///< chance to be chosen, before normalisation: power, mean over RGB
+    glm::dvec3 origin{0.0}, edge1{0.0}, edge2{0.0}, normal{0.0};
+    glm::vec3 radiance{0.0f};
+    double weightPerArea = 0;
+    bool doubleSided = false;
+    std::uint32_t g = 0, material = 0;
+};
+
+double mean(const glm::dvec3& rgb) {
+    return (rgb.x + rgb.y + rgb.z) / 3.0;
+}
+
+/** Whether two triangles are the halves of one parallelogram: they share an edge, and the corners across it
+ * mirror each other through its middle exactly as far as float can say. Gives the corner and edges of it. */
+bool makesParallelogram(const glm::vec3* a, const glm::vec3* b, Candidate& light) {
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            // The shared edge runs forwards in one triangle and backwards in the other.
+            if (a[(i + 1) % 3] != b[(k + 2) % 3] || a[(i + 2) % 3] != b[(k + 1) % 3]) continue;
+            const glm::dvec3 corner(a[i]), left(a[(i + 1) % 3]), right(a[(i + 2) % 3]), across(b[k]);
+            const glm::dvec3 size = glm::max(glm::max(glm::abs(corner), glm::abs(across)),
+                                             glm::max(glm::abs(left), glm::abs(right)));
+            const glm::dvec3 gap = glm::abs(left + right - corner - across);
+            const double unit = std::numeric_limits<float>::epsilon();
+            if (gap.x > 2 * unit * size.x || gap.y > 2 * unit * size.y || gap.z > 2 * unit * size.z) continue;
+            light.origin = corner;
+            light.edge1 = left - corner;
+            light.edge2 = right - corner;
+            return true;
+        }
+    return false;
+}
+
+void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
+                 std::vector<Candidate>& lights) {
+    // Radiance that decides how often a surface is chosen: constant over a material's surfaces, so that the
+    // density per area is too, and a ray that finds the surface knows it from the material alone.
+    std::vector<glm::dvec3> meanRadiance(scene.materials.size() + 1, glm::dvec3(0.0));
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        meanRadiance[i] = glm::dvec3(material.emission);
+        if (material.emission != glm::vec3(0.0f) && material.emissiveTexture) {
+            const Texture& texture = scene.textures[std::size_t(material.emissiveTexture.texture)];
+            // A texture may show only its dark part on these surfaces; the floor keeps every surface that
+            // could emit in the table.
+            meanRadiance[i] *=
+                glm::max(meanColor(scene.images[std::size_t(texture.image)]), glm::dvec3(1e-3));
+        }
+    }
+    for (std::size_t g = 0; g < surfaces.size(); ++g) {
+        const std::uint32_t index = surfaces[g].material;
+        if (!(mean(meanRadiance[index]) > 0.0)) continue;
+        const Material& material = scene.materials[index];
+        const glm::vec3* corners = positions.data() + g * 3;
+        Candidate light;
+        light.kind = LightKind::Triangle;
+        light.origin = glm::dvec3(corners[0]);
+        light.edge1 = glm::dvec3(corners[1]) - light.origin;
+        light.edge2 = glm::dvec3(corners[2]) - light.origin;
+        glm::dvec3 normal = glm::cross(light.edge1, light.edge2);
+        double area = 0.5 * glm::length(normal);
+        if (!(area > 0.0)) continue;
+        if (!material.emissiveTexture && g + 1 < surfaces.size() && surfaces[g + 1].material == index &&
+            surfaces[g + 1].instance == surfaces[g].instance &&
+            makesParallelogram(corners, corners + 3, light)) {
+            light.kind = LightKind::Parallelogram;
+            area = glm::length(glm::cross(light.edge1, light.edge2));
+        }
+        light.normal = glm::normalize(normal);
+        light.radiance = material.emission;
+        light.doubleSided = material.doubleSided;
+        light.weightPerArea =
+            glm::pi<double>() * mean(meanRadiance[index]) * (material.doubleSided ? 2.0 : 1.0);
+        light.weight = light.weightPerArea * area;
+        light.g = std::uint32_t(g);
+        light.material = index;
+        lights.push_back(light);
+        if (light.kind == LightKind::Parallelogram) ++g;
+    }
+}
+
+void addPunctual(const Scene& scene, std::vector<Candidate>& lights) {
+    const Scene::Bounds bounds = scene.bounds();
+    const double radius = bounds.empty() ? 1.0 : 0.5 * glm::length(bounds.upper - bounds.lower);
+    for (const PlacedLight& placed : scene.placedLights()) {
+        const PunctualLight& source = scene.lights[std::size_t(placed.light)];
+        const double strength = mean(glm::dvec3(source.intensity));
+        if (!(strength > 0.0)) continue;
+        Candidate light;
+        light.origin = glm::dvec3(placed.transform[3]);
+        light.radiance = source.intensity;
+        const glm::dvec3 forward = -glm::dvec3(placed.transform[2]);
+        light.normal = glm::length(forward) > 0.0 ? glm::normalize(forward) : glm::dvec3(0, 0, -1);
+        switch (source.type) {
+            case PunctualLight::Type::Point:
+                light.kind = LightKind::Point;
+                light.weight = 4.0 * glm::pi<double>() * strength;
+                break;
+            case PunctualLight::Type::Spot: {
+                light.kind = LightKind::Spot;
+                const double outer = std::cos(double(source.outerConeAngle));
+                const double inner = std::cos(double(source.innerConeAngle));
+                light.weight = 2.0 * glm::pi<double>() * strength * std::max(1.0 - outer, 1e-6);
+                // KHR_lights_punctual: attenuation = clamp(cos * scale + offset, 0, 1)^2.
+                const double scale = 1.0 / std::max(0.001, inner - outer);
+                light.edge2 = {scale, -outer * scale, 0.0};
+                break;
+            }
+            case PunctualLight::Type::Directional:
+                light.kind = LightKind::Directional;
+                light.weight = glm::pi<double>() * radius * radius * strength;
+                break;
+        }
+        light.edge2.z = source.type == PunctualLight::Type::Directional ? 0.0 : double(source.range);
+        lights.push_back(light);
+    }
+}
+
+glm::vec4 texel(const glm::dvec3& v, float w) {
+    return {glm::vec3(v), w};
+}
+glm::vec4 texel(const glm::dvec3& v, std::uint32_t bits) {
+    return {glm::vec3(v), glm::uintBitsToFloat(bits)};
+}
+
+}  // namespace
+
+AliasTable aliasTable(std::span<const double> weights) {
+    const std::size_t n = weights.size();
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    AliasTable table{std::vector<float>(n, 1.0f), std::vector<std::uint32_t>(n)};
+    std::iota(table.alias.begin(), table.alias.end(), 0u);
+    std::vector<double> share(n);
+    std::vector<std::uint32_t> small, large;
+    for (std::size_t i = 0; i < n; ++i) {
+        share[i] = weights[i] / total * double(n);
+        (share[i] < 1.0 ? small : large).push_back(std::uint32_t(i));
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::uint32_t s = small.back(), l = large.back();
+        small.pop_back();
+        table.threshold[s] = float(share[s]);
+        table.alias[s] = l;
+        share[l] = (share[l] + share[s]) - 1.0;
+        if (share[l] < 1.0) {
+            large.pop_back();
+            small.push_back(l);
+        }
+    }
+    return table;
+}
+
+void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
+            const PackOptions& options, PackedScene& packed) {
+    std::vector<Candidate> candidates;
+    if (options.sampleSurfaces) addSurfaces(scene, positions, surfaces, candidates);
+    packed.areaLights = !candidates.empty();
+    const std::size_t areaCount = candidates.size();
+    for (const Candidate& light : candidates) packed.triangleLights |= light.kind == LightKind::Triangle;
+    addPunctual(scene, candidates);
+    packed.punctualLights = candidates.size() > areaCount;
+    packed.lightCount = std::uint32_t(candidates.size());
+    if (candidates.empty()) return;
+
+    std::vector<double> weights;
+    for (const Candidate& light : candidates) weights.push_back(light.weight);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const AliasTable table = aliasTable(weights);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const Candidate& light = candidates[i];
+        const bool surface = i < areaCount;
+        const double density = surface ? light.weightPerArea / total : light.weight / total;
+        // Error of a point on the surface from rounding its corners and the sum, along the normal; see
+        // shaders/intersection/offset.glsl, which does the same for points that rays find.
+        const glm::dvec3 far =
+            glm::max(glm::max(glm::abs(light.origin), glm::abs(light.origin + light.edge1)),
+                     glm::max(glm::abs(light.origin + light.edge2),
+                              glm::abs(light.origin + light.edge1 + light.edge2)));
+        const double unit = 0.5 * std::numeric_limits<float>::epsilon();
+        const double offset = surface ? 10.0 * unit * glm::dot(glm::abs(light.normal), far) : 0.0;
+        packed.lights.push_back(texel(light.origin, table.threshold[i]));
+        packed.lights.push_back(texel(light.edge1, table.alias[i]));
+        packed.lights.push_back(texel(light.edge2, std::uint32_t(light.kind)));
+        packed.lights.push_back({light.radiance, float(light.doubleSided ? -density : density)});
+        packed.lights.push_back(texel(light.normal, float(offset)));
+        packed.lights.push_back({glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material),
+                                 float(light.weight / total), 0.0f});
+        if (surface) packed.materials[std::size_t(light.material) * kMaterialTexels + 2].x = float(density);
+    }
+}
+
+}  // namespace helio::pack

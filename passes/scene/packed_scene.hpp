@@ -1,0 +1,109 @@
+#pragma once
+/** @file
+ * A scene flattened to the arrays kernels read: world-space triangles, their attributes, materials, textures
+ * and lights. Host only, so that packing is tested without a device; DeviceScene uploads the result. Every
+ * array is a whole number of 16-byte texels and is described beside its accessors in shaders/scene.
+ */
+#include <heliograph/scene.hpp>
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace helio {
+
+/** Texels per material in PackedScene::materials; shaders/scene/materials.glsl names them. */
+inline constexpr std::uint32_t kMaterialTexels = 7;
+/** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
+inline constexpr std::uint32_t kLightTexels = 6;
+
+/** How a light is sampled; the values are those of shaders/scene/lights.glsl. */
+enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional };
+
+struct PackOptions {
+    /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
+     * order and `nodes` is empty. */
+    bool tree = true;
+    /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
+    bool sampleSurfaces = true;
+};
+
+/** Arrays for the device. "Slot" is a triangle's place in `triangles`; "g" is its global index in scene
+ * order: instances as Scene::instances() lists them, then the mesh's triangles over its primitives. */
+struct PackedScene {
+    /** 3 texels a slot: v0.xyz | bits(g), v1.xyz | bits(instance), v2.xyz | bits(material). World space,
+     * transformed in double and rounded once; counter-clockwise is front, mirrored transforms included. */
+    std::vector<glm::vec4> triangles;
+    /** First g of every instance, and the number of triangles at the end. */
+    std::vector<std::uint32_t> instanceFirst;
+    /** 5 texels a node, see engine/scene/bvh.hpp. Empty without a tree. */
+    std::vector<glm::uvec4> nodes;
+    /** 3 texels a g (one per vertex): unit world-space shading normal, 0. Empty where no mesh has normals. */
+    std::vector<glm::vec4> normals;
+    /** 3 texels a g: u, v of set 0 and of set 1. Empty where no material in use samples a texture. */
+    std::vector<glm::vec4> texcoords;
+    /** 3 texels a g: linear colour. Empty where no mesh has colours. */
+    std::vector<glm::vec4> colors;
+    std::vector<glm::vec4> materials;    ///< kMaterialTexels each; the last is glTF's default material
+    std::vector<glm::vec4> lights;       ///< kLightTexels each
+    std::vector<glm::uvec4> textures;    ///< offset, width, height, flags
+    std::vector<std::uint32_t> texels8;  ///< RGBA8 as stored in the file, R in the low byte
+    std::vector<glm::vec4> texelsFloat;  ///< linear float texels
+    glm::vec3 environment{0.0f};         ///< constant radiance of what no geometry covers
+    std::uint32_t triangleCount = 0;
+    std::uint32_t lightCount = 0;
+    std::uint32_t nodeCount = 0;    ///< of the tree, holes of its blocks included
+    std::uint32_t treeDepth = 0;    ///< levels; bounds the traversal stack
+    bool areaLights = false;        ///< some light in the table is a surface
+    bool triangleLights = false;    ///< some surface in the table is no parallelogram
+    bool punctualLights = false;    ///< some light in the table is punctual
+    bool emission = false;          ///< some surface in use emits
+    bool texturedEmission = false;  ///< emission varies over some surface in use
+    bool baseColorTextures = false;
+    bool doubleSidedEmission = false;
+    /** "WHAT", "WHY" of everything in the scene that kernels do not show (yet). */
+    std::vector<std::pair<std::string, std::string>> skipped;
+    double treeSeconds = 0;  ///< time to build the tree
+
+    std::uint64_t bytes() const;
+};
+
+/** Flattens a scene. Throws InputError where an index is out of range, a position is not finite in float, or
+ * the scene has more triangles or texels than a 32-bit index reaches. */
+PackedScene packScene(const Scene& scene, const PackOptions& options = {});
+
+namespace pack {
+// The steps of packScene, each in its own file. All append to `packed`.
+
+/** One triangle of the flattened scene with what the later steps need. */
+struct Surface {
+    std::uint32_t instance = 0;
+    std::uint32_t material = 0;  ///< into the packed materials
+};
+
+/** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
+std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::vector<Surface>& surfaces);
+/** Materials and textures that some instance uses. */
+void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed);
+/** The light table: emissive triangles (pairs that make a parallelogram as one) and punctual lights, chosen
+ * in proportion to power by an alias table; also each material's sampling density per area. */
+void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
+            const PackOptions& options, PackedScene& packed);
+
+/** Mean linear RGB of a texture used as colour. */
+glm::dvec3 meanColor(const TextureImage& image);
+
+/** Vose's alias method: `threshold[i]` is the chance to keep i, else `alias[i]` is taken. Weights are not
+ * negative and their sum is positive. */
+struct AliasTable {
+    std::vector<float> threshold;
+    std::vector<std::uint32_t> alias;
+};
+AliasTable aliasTable(std::span<const double> weights);
+}  // namespace pack
+
+}  // namespace helio

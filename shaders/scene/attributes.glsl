@@ -1,0 +1,31 @@
+#ifndef HELIOGRAPH_SCENE_ATTRIBUTES
+#define HELIOGRAPH_SCENE_ATTRIBUTES
+/** @file Vertex attributes, 3 texels a triangle in scene order. `b` are the barycentrics of v0, v1, v2. */
+#include "shaders/scene/features.glsl"
+
+layout(set = 0, binding = 22) uniform samplerBuffer uNormals;    ///< unit world-space shading normals
+layout(set = 0, binding = 23) uniform samplerBuffer uTexcoords;  ///< u, v of set 0, u, v of set 1
+layout(set = 0, binding = 24) uniform samplerBuffer uColors;     ///< linear RGBA
+
+/** Interpolated shading normal, unit; `face` (unit) where the scene has none or the interpolation vanishes. */
+vec3 shadingNormal(int g, vec3 b, vec3 face) {
+    if (!HAS_NORMALS) return face;
+    const vec3 n = b.x * texelFetch(uNormals, g * 3).xyz + b.y * texelFetch(uNormals, g * 3 + 1).xyz +
+                   b.z * texelFetch(uNormals, g * 3 + 2).xyz;
+    const float squared = dot(n, n);
+    return squared > 1e-12 ? n * inversesqrt(squared) : face;
+}
+
+/** Both sets of texture coordinates. */
+vec4 texcoords(int g, vec3 b) {
+    return b.x * texelFetch(uTexcoords, g * 3) + b.y * texelFetch(uTexcoords, g * 3 + 1) +
+           b.z * texelFetch(uTexcoords, g * 3 + 2);
+}
+
+/** Interpolated vertex colour; white where the scene has none. */
+vec4 vertexColor(int g, vec3 b) {
+    if (!HAS_COLORS) return vec4(1.0);
+    return b.x * texelFetch(uColors, g * 3) + b.y * texelFetch(uColors, g * 3 + 1) +
+           b.z * texelFetch(uColors, g * 3 + 2);
+}
+#endif

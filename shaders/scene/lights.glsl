@@ -1,0 +1,99 @@
+#ifndef HELIOGRAPH_SCENE_LIGHTS
+#define HELIOGRAPH_SCENE_LIGHTS
+/** @file
+ * Sampling a light in proportion to power: one row of an alias table, then a point on it.
+ */
+#include "shaders/scene/features.glsl"
+#include "shaders/scene/materials.glsl"
+
+/**
+ * 6 texels a light (kLightTexels):
+ * 0: corner or position | chance to keep this row
+ * 1: edge | bits of the row taken otherwise
+ * 2: edge (spot: scale and offset of the cone; punctual: z is the range, 0 for none) | bits of the kind
+ * 3: radiance (intensity; irradiance) RGB | chance density per area, negative where both faces emit
+ *    (punctual: chance to be chosen)
+ * 4: unit normal (spot, directional: direction of the light) | offset against rounding, along the normal
+ * 5: bits of g, bits of material, chance to be chosen, 0
+ */
+layout(set = 0, binding = 26) uniform usamplerBuffer uLights;
+const int LIGHT_TEXELS = 6;
+const uint LIGHT_TRIANGLE = 0u, LIGHT_PARALLELOGRAM = 1u, LIGHT_POINT = 2u, LIGHT_SPOT = 3u, LIGHT_DIRECTIONAL = 4u;
+
+struct LightSample {
+    vec3 target;        ///< end of the shadow ray: on the light, moved off it by its error bound
+    bool infinite;      ///< `target` is a direction, not a point
+    vec3 direction;     ///< unit, from the receiver to the light
+    vec3 radiance;      ///< estimate of the integral over the light: L / density over solid angle, or the
+                        ///< irradiance across the direction for a punctual light, each over the chance
+    float density;      ///< over solid angle; 0 for a punctual light, which no ray finds
+};
+
+/** Samples light for a receiver at p. `choice` picks the light, `u` the point on it; all in [0, 1). A sample
+ * with zero radiance brings nothing. */
+LightSample sampleLight(vec3 p, float choice, vec2 u) {
+    int row = 0;
+    if (LIGHT_COUNT > 1) {
+        const float scaled = choice * float(LIGHT_COUNT);
+        row = min(int(scaled), LIGHT_COUNT - 1);
+        const float keep = uintBitsToFloat(texelFetch(uLights, row * LIGHT_TEXELS).w);
+        const int other = int(texelFetch(uLights, row * LIGHT_TEXELS + 1).w);
+        row = scaled - float(row) < keep ? row : other;
+    }
+    const int first = row * LIGHT_TEXELS;
+    const vec4 corner = uintBitsToFloat(texelFetch(uLights, first));
+    const vec4 edge1 = uintBitsToFloat(texelFetch(uLights, first + 1));
+    const uvec4 edge2Bits = texelFetch(uLights, first + 2);
+    const vec3 edge2 = uintBitsToFloat(edge2Bits.xyz);
+    const vec4 strength = uintBitsToFloat(texelFetch(uLights, first + 3));
+    const vec4 facing = uintBitsToFloat(texelFetch(uLights, first + 4));
+    const uint kind = edge2Bits.w;
+
+    LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), 0.0);
+    if (HAS_AREA_LIGHTS) {
+        // The unit square folded along its diagonal covers a triangle evenly.
+        const bool fold = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE && u.x + u.y > 1.0;
+        const vec2 s = fold ? 1.0 - u : u;
+        const vec3 q = corner.xyz + edge1.xyz * s.x + edge2 * s.y;
+        const vec3 toLight = q - p;
+        const float squared = dot(toLight, toLight);
+        const float distance = sqrt(squared);
+        result.direction = toLight / distance;
+        const float cosine = -dot(facing.xyz, result.direction);
+        const bool bothFaces = strength.w < 0.0;
+        result.target = q + facing.xyz * (cosine < 0.0 ? -facing.w : facing.w);
+        const float towards = bothFaces ? abs(cosine) : cosine;
+        const bool visible = towards > 0.0 && squared > 0.0;
+        result.density = visible ? abs(strength.w) * squared / towards : 0.0;
+        result.radiance = visible ? strength.rgb / result.density : vec3(0.0);
+        if (HAS_EMISSION_TEXTURES) {
+            const uvec4 identity = texelFetch(uLights, first + 5);
+            const int g = int(identity.x), material = int(identity.y);
+            // Only whole triangles carry textures (parallelograms are merged where emission is constant).
+            const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
+            if (kind == LIGHT_TRIANGLE) result.radiance *= materialTexture(material, 5, texcoords(g, b)).rgb;
+        }
+    }
+    if (HAS_PUNCTUAL_LIGHTS && (!HAS_AREA_LIGHTS || kind >= LIGHT_POINT)) {
+        const bool directional = kind == LIGHT_DIRECTIONAL;
+        const vec3 toLight = directional ? -facing.xyz : corner.xyz - p;
+        const float squared = dot(toLight, toLight);
+        result.direction = toLight * inversesqrt(max(squared, 1e-37));
+        result.target = directional ? result.direction : corner.xyz;
+        result.infinite = directional;
+        result.density = 0.0;
+        float attenuation = directional ? 1.0 : 1.0 / max(squared, 1e-37);
+        if (kind == LIGHT_SPOT) {
+            const float cone = clamp(-dot(facing.xyz, result.direction) * edge2.x + edge2.y, 0.0, 1.0);
+            attenuation *= cone * cone;
+        }
+        if (!directional && edge2.z > 0.0) {
+            // KHR_lights_punctual's window, 0 beyond the range.
+            const float ratio = squared / (edge2.z * edge2.z);
+            attenuation *= clamp(1.0 - ratio * ratio, 0.0, 1.0);
+        }
+        result.radiance = squared > 0.0 ? strength.rgb * (attenuation / strength.w) : vec3(0.0);
+    }
+    return result;
+}
+#endif

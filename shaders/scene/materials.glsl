@@ -1,0 +1,50 @@
+#ifndef HELIOGRAPH_SCENE_MATERIALS
+#define HELIOGRAPH_SCENE_MATERIALS
+/** @file Materials: 7 texels each (kMaterialTexels). */
+#include "shaders/scene/attributes.glsl"
+#include "shaders/scene/features.glsl"
+#include "shaders/scene/textures.glsl"
+
+/**
+ * 0: base colour RGBA
+ * 1: emission RGB (W/(sr m^2)), bits of flags
+ * 2: light sampling density per area (1/m^2), metallic, roughness, alpha cutoff
+ * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of texcoord set
+ * 5, 6: the same of the emissive texture
+ */
+layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;
+const int MATERIAL_TEXELS = 7;
+const uint MATERIAL_DOUBLE_SIDED = 1u;
+
+/** Texel of a material's texture use at `row` (3 or 5): the texture's colour, white where there is none. */
+vec4 materialTexture(int material, int row, vec4 uv) {
+    const uvec4 first = texelFetch(uMaterials, material * MATERIAL_TEXELS + row);
+    const uvec4 second = texelFetch(uMaterials, material * MATERIAL_TEXELS + row + 1);
+    const vec3 p = vec3(second.w == 0u ? uv.xy : uv.zw, 1.0);
+    const vec2 transformed = vec2(dot(uintBitsToFloat(first.xyz), p), dot(uintBitsToFloat(second.xyz), p));
+    vec4 value = vec4(1.0);
+    if (int(first.w) >= 0) value = sampleTexture(int(first.w), transformed);
+    return value;
+}
+
+/** Linear base colour: factor times texture times vertex colour. `b`: barycentrics in triangle g. */
+vec4 baseColor(int material, int g, vec3 b) {
+    vec4 color = uintBitsToFloat(texelFetch(uMaterials, material * MATERIAL_TEXELS)) * vertexColor(g, b);
+    if (HAS_BASE_TEXTURES) color *= materialTexture(material, 3, texcoords(g, b));
+    return color;
+}
+
+struct Emission {
+    vec3 radiance;        ///< of a face that emits
+    bool doubleSided;     ///< the back face emits too
+    float areaDensity;    ///< chance density per area that light sampling chooses a point of this material
+};
+
+Emission emission(int material, int g, vec3 b) {
+    const uvec4 row = texelFetch(uMaterials, material * MATERIAL_TEXELS + 1);
+    Emission e = Emission(uintBitsToFloat(row.xyz), (row.w & MATERIAL_DOUBLE_SIDED) != 0u, 0.0);
+    if (HAS_EMISSION_TEXTURES) e.radiance *= materialTexture(material, 5, texcoords(g, b)).rgb;
+    if (HAS_AREA_LIGHTS) e.areaDensity = uintBitsToFloat(texelFetch(uMaterials, material * MATERIAL_TEXELS + 2).x);
+    return e;
+}
+#endif
