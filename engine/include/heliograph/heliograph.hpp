@@ -8,4 +8,5 @@
 #include <heliograph/kernel.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
+#include <heliograph/verify.hpp>
 #include <heliograph/version.hpp>
