@@ -10,9 +10,11 @@
  */
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 static_assert(sizeof(0.0) == sizeof(float),
               "list this source file in helio_shared_sources() of CMake: literals must be floats");
@@ -74,6 +76,7 @@ HELIO_SCALAR_OPERATORS(Vec4)
 HELIO_SCALAR_OPERATORS(Mat3)
 HELIO_SCALAR_OPERATORS(Mat4)
 #undef HELIO_SCALAR_OPERATORS
+#include "engine/core/shared_double.inc"
 
 #include "engine/core/shared_library.inc"
 }  // namespace helio::shared64
