@@ -1,0 +1,29 @@
+// Writes the entries that were counted into the cells' lists; counts go down to 0 again.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shaders/raster/view.glsl"
+#include "shaders/raster/bin.glsl"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform usamplerBuffer uRecords;
+layout(set = 0, binding = 1, std430) readonly buffer uState { RasterState state; };
+layout(set = 0, binding = 2, std430) readonly buffer uStarts { uint starts[]; };
+layout(set = 0, binding = 3, std430) buffer uCounts { uint counts[]; };
+layout(set = 0, binding = 4, std430) writeonly buffer uEntries { uint entries[]; };
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= state.recordCount) return;
+    int at = int(index) * RECORD_TEXELS;
+    Record record = unpackRecord(texelFetch(uRecords, at), texelFetch(uRecords, at + 1), texelFetch(uRecords, at + 2),
+                                 texelFetch(uRecords, at + 3));
+    CellWalk walk = beginWalk(record, imageSizePixels(), state.maxCells);
+    for (; walk.left > 0; advance(walk)) {
+        if (touches(walk)) {
+            int cell = cellIndex(walk);
+            entries[starts[cell] + atomicAdd(counts[cell], 0xffffffffu) - 1u] = index;
+        }
+    }
+}

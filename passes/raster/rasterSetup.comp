@@ -1,0 +1,119 @@
+// Set-up: every triangle of the batch is transformed and culled; small ones are drawn at once by 64-bit atomics,
+// others are listed for the tiles or for clipping.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shaders/raster/view.glsl"
+#include "shaders/scene/triangles.glsl"
+#include "shaders/raster/triangle.glsl"
+#include "shaders/raster/state.glsl"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 1, std430) buffer uVisibility { uint64_t visibility[]; };
+layout(set = 0, binding = 2, std430) buffer uState { RasterState state; };
+layout(set = 0, binding = 3, std430) buffer uCounters { uint64_t counters[]; };
+layout(set = 0, binding = 4, std430) writeonly buffer uLarge { uint large[]; };
+layout(set = 0, binding = 5, std430) writeonly buffer uClipped { uint clipped[]; };
+
+// A small triangle covers at most SMALL x SMALL pixels' centres; SMALL_EXTENT keeps its edge functions in 32 bits.
+const int SMALL = 8;
+const int SMALL_EXTENT = 8192;
+const uint PER_THREAD = 4u;
+
+shared uint workgroupCounters[COUNTERS];
+
+void main() {
+    uint lane = gl_LocalInvocationIndex;
+    if (lane < uint(COUNTERS)) workgroupCounters[lane] = 0u;
+    barrier();
+
+    ivec2 size = imageSizePixels();
+    double width = double(size.x), height = double(size.y);
+    uint triangles = 0u, outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
+         clippedCount = 0u, visited = 0u, covered = 0u;
+    [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
+        uint index = gl_WorkGroupID.x * (64u * PER_THREAD) + k * 64u + lane;
+        bool valid = index < push.count;
+        uint t = push.first + min(index, push.count - 1u);
+        Triangle source = fetchTriangle(int(t));
+        HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
+        triangles += uint(valid);
+
+        // Each test is linear in homogeneous pixels, hence right for vertices behind the eye too.
+        bool outside = max(a.x, max(b.x, c.x)) < 0.0LF || max(a.y, max(b.y, c.y)) < 0.0LF ||
+                       (a.x > width * a.w && b.x > width * b.w && c.x > width * c.w) ||
+                       (a.y > height * a.w && b.y > height * b.w && c.y > height * c.w) ||
+                       max(a.near, max(b.near, c.near)) < 0.0LF;
+        outsideCount += uint(valid && outside);
+        valid = valid && !outside;
+
+        DepthPlane plane = depthPlane(a, b, c);
+        bool back = (push.flags & RASTER_CULL_BACK) != 0u && plane.facing < 0.0LF;
+        backCount += uint(valid && back);
+        valid = valid && !back;
+
+        double reach = max(max(max(abs(a.x), abs(a.y)) - GUARD_BAND * a.w, max(abs(b.x), abs(b.y)) - GUARD_BAND * b.w),
+                           max(abs(c.x), abs(c.y)) - GUARD_BAND * c.w);
+        bool clip = valid && (reach > 0.0LF || min(a.near, min(b.near, c.near)) < 0.0LF);
+        clippedCount += uint(clip);
+        if (clip) clipped[atomicAdd(state.clippedCount, 1u)] = t;
+        valid = valid && !clip;
+
+        ivec2 p = snap(a.x, a.y, a.w), q = snap(b.x, b.y, b.w), r = snap(c.x, c.y, c.w);
+        int64_t area = signedArea(p, q, r);
+        ivec4 bounds = pixelBounds(p, q, r, size);
+        ivec2 cells = bounds.zw - bounds.xy + 1;
+        bool none = area == 0 || min(cells.x, cells.y) <= 0;
+        emptyCount += uint(valid && none);
+        valid = valid && !none;
+
+        ivec2 extent = max(p, max(q, r)) - min(p, min(q, r));
+        bool small = max(cells.x, cells.y) <= SMALL && max(extent.x, extent.y) <= SMALL_EXTENT;
+        bool tiled = valid && !small;
+        largeCount += uint(tiled);
+        if (tiled) large[atomicAdd(state.largeCount, 1u)] = t;
+
+        valid = valid && small;
+        smallCount += uint(valid);
+        if (area < 0) {
+            ivec2 swap = q;
+            q = r;
+            r = swap;
+        }
+        ivec3 e = ivec3(edgeAtSmall(p, q, bounds.xy), edgeAtSmall(q, r, bounds.xy), edgeAtSmall(r, p, bounds.xy));
+        ivec3 right = ivec3(p.y - q.y, q.y - r.y, r.y - p.y);
+        ivec3 down = ivec3(q.x - p.x, r.x - q.x, p.x - r.x);
+        int low = floatBitsToInt(plane.low), high = floatBitsToInt(plane.high);
+        uint id = uint(source.g);
+        int pixels = valid ? cells.x * cells.y : 0;
+        visited += uint(pixels);
+        int x = bounds.x, y = bounds.y;
+        ivec3 rowStep = down - right * (cells.x - 1);
+        for (int i = 0; i < pixels; ++i) {
+            if (min(e.x, min(e.y, e.z)) >= 0) {
+                int depth =
+                    depthBits(plane.a, plane.b * (double(y) + 0.5LF) + plane.c, double(x) + 0.5LF, low, high);
+                atomicMax(visibility[y * size.x + x], visibilityKey(depth, id));
+                ++covered;
+            }
+            bool wrap = x == bounds.z;
+            e += wrap ? rowStep : right;
+            x = wrap ? bounds.x : x + 1;
+            y += int(wrap);
+        }
+    }
+
+    atomicAdd(workgroupCounters[COUNT_TRIANGLES], triangles);
+    atomicAdd(workgroupCounters[COUNT_OUTSIDE], outsideCount);
+    atomicAdd(workgroupCounters[COUNT_BACK], backCount);
+    atomicAdd(workgroupCounters[COUNT_EMPTY], emptyCount);
+    atomicAdd(workgroupCounters[COUNT_SMALL], smallCount);
+    atomicAdd(workgroupCounters[COUNT_LARGE], largeCount);
+    atomicAdd(workgroupCounters[COUNT_CLIPPED], clippedCount);
+    atomicAdd(workgroupCounters[COUNT_SMALL_VISITED], visited);
+    atomicAdd(workgroupCounters[COUNT_SMALL_COVERED], covered);
+    barrier();
+    if (lane < uint(COUNTERS)) atomicAdd(counters[lane], uint64_t(workgroupCounters[lane]));
+}

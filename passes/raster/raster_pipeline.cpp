@@ -1,0 +1,152 @@
+#include "passes/raster/raster_pipeline.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+#include <heliograph_kernels/raster.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+namespace helio {
+namespace {
+
+// As in shaders/raster/state.glsl.
+constexpr int kLevels = 6;
+constexpr std::uint32_t kClipParts = 6;
+constexpr std::uint32_t kRecordBytes = 64;
+constexpr std::uint64_t kStateBytes = 64;
+constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52;
+constexpr std::uint32_t kSetupTriangles = 256;  // of a workgroup of set-up
+
+/** Push constants of every kernel that takes the view. */
+struct RasterPush {
+    double rowX[4], rowY[4], rowW[4];
+    double depthOffset, depthSlope;
+    std::uint32_t size, first, count, flags;
+};
+static_assert(sizeof(RasterPush) == 128);
+
+RasterPush makePush(const RasterView& view, bool cullBack, std::uint32_t first, std::uint32_t count) {
+    return {{view.rowX.x, view.rowX.y, view.rowX.z, view.eye.x},
+            {view.rowY.x, view.rowY.y, view.rowY.z, view.eye.y},
+            {view.rowW.x, view.rowW.y, view.rowW.z, view.eye.z},
+            view.depthOffset,
+            view.depthSlope,
+            view.width | view.height << 16,
+            first,
+            count,
+            (view.orthographic ? 1u : 0u) | (cullBack ? 2u : 0u)};
+}
+
+std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
+    std::uint64_t cells = 0;
+    for (int level = 0; level < kLevels; ++level) {
+        const std::uint64_t side = 16ull << (2 * level);
+        cells += ((width + side - 1) / side) * ((height + side - 1) / side);
+    }
+    return cells;
+}
+
+}  // namespace
+
+RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& options)
+    : options_(options), maxStorageBufferRange_(device.info().maxStorageBufferRange) {
+    assert(options.batch > 0);
+    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"})
+        if (!device.info().has(needed))
+            throw DeviceError(fmt::format(
+                "{} lacks {}, which the rasterizer needs; use the path pipeline or another device",
+                device.info().name, needed));
+    // A record is 64 bytes and all of a batch must be in reach of one binding; indirect dispatches have at
+    // most 65,535 workgroups of 64.
+    const std::uint64_t records =
+        std::min<std::uint64_t>(maxStorageBufferRange_ / kRecordBytes, 65535u * 64u);
+    options_.batch = std::uint32_t(std::clamp<std::uint64_t>(options_.batch, 1, records / kClipParts));
+}
+
+RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
+                                     std::shared_ptr<const RasterView> view) const {
+    assert(view != nullptr);
+    const std::uint32_t width = view->width, height = view->height;
+    const std::uint64_t visibilityBytes = std::uint64_t(width) * height * 8;
+    if (width == 0 || height == 0 || width > kMaxRasterSize || height > kMaxRasterSize ||
+        visibilityBytes > maxStorageBufferRange_)
+        throw InputError("", "",
+                         fmt::format("the rasterizer cannot hold an image of {} x {} pixels", width, height),
+                         fmt::format("choose at most {} pixels, and 1 to {} each way",
+                                     maxStorageBufferRange_ / 8, kMaxRasterSize));
+
+    RasterOutput output;
+    output.visibility = graph.buffer("raster.visibility", {visibilityBytes});
+    output.counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
+    graph.fill("raster.clear", output.visibility, 0);
+    graph.fill("raster.clearCounters", output.counters, 0);
+    if (triangles.count == 0) return output;
+
+    const std::uint32_t batch = std::min(options_.batch, triangles.count);
+    const std::uint64_t cells = cellCount(width, height);
+    const std::uint64_t records = std::uint64_t(batch) * kClipParts;
+    // No record may need more entries than there are cells; and each must find room for at least one.
+    const std::uint64_t entries =
+        std::max(records, std::min({records * cells, options_.entries, maxStorageBufferRange_ / 4}));
+
+    const Buffer state = graph.buffer("raster.state", {kStateBytes});
+    const Buffer large = graph.buffer("raster.large", {std::uint64_t(batch) * 4});
+    const Buffer clipped = graph.buffer("raster.clipped", {std::uint64_t(batch) * 4});
+    const Buffer record = graph.buffer("raster.records", {records * kRecordBytes});
+    const Buffer counts = graph.buffer("raster.counts", {cells * 4});
+    const Buffer starts = graph.buffer("raster.starts", {(cells + 1) * 4});
+    const Buffer entry = graph.buffer("raster.entries", {entries * 4});
+
+    graph.fill("raster.clearCounts", counts, 0);
+    for (std::uint32_t first = 0; first < triangles.count; first += batch) {
+        const std::uint32_t count = std::min(batch, triangles.count - first);
+        const bool cullBack = options_.cullBackFaces;
+        const auto push = [view, cullBack, first, count] { return makePush(*view, cullBack, first, count); };
+
+        graph.fill("raster.clearState", state, 0);
+        graph.compute("raster.setup", shaders::rasterSetup)
+            .reads({{"uTriangles", triangles.buffer}})
+            .modifies({{"uVisibility", output.visibility}, {"uState", state}, {"uCounters", output.counters}})
+            .overwrites({{"uLarge", large}, {"uClipped", clipped}})
+            .record([push, count](Commands& c) {
+                c.push(push()).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
+            });
+        graph.compute("raster.plan", shaders::rasterPlan)
+            .modifies({{"uState", state}})
+            .record([entries](Commands& c) { c.push(std::uint32_t(entries)).dispatch(1); });
+        graph.compute("raster.large", shaders::rasterLarge)
+            .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uLarge", large}})
+            .overwrites({{"uRecords", record}})
+            .modifies({{"uCounts", counts}})
+            .indirect(state)
+            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kLargeGroups); });
+        graph.compute("raster.clip", shaders::rasterClip)
+            .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uClipped", clipped}})
+            .writes({{"uRecords", record}})
+            .modifies({{"uCounts", counts}, {"uCounters", output.counters}})
+            .indirect(state)
+            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
+        graph.compute("raster.scan", shaders::rasterScan)
+            .reads({{"uCounts", counts}})
+            .overwrites({{"uStarts", starts}})
+            .modifies({{"uState", state}, {"uCounters", output.counters}})
+            .record([push](Commands& c) { c.push(push()).dispatch(1); });
+        graph.compute("raster.fill", shaders::rasterFill)
+            .reads({{"uRecords", record}, {"uState", state}, {"uStarts", starts}})
+            .modifies({{"uCounts", counts}})
+            .overwrites({{"uEntries", entry}})
+            .indirect(state)
+            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kFillGroups); });
+        graph.compute("raster.tile", shaders::rasterTile)
+            .reads({{"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts}})
+            .modifies({{"uVisibility", output.visibility}, {"uCounters", output.counters}})
+            .indirect(state)
+            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
+    }
+    return output;
+}
+
+}  // namespace helio

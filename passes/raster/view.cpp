@@ -1,0 +1,59 @@
+#include "passes/raster/view.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace helio {
+
+RasterView makeRasterView(const glm::dmat4& cameraToWorld, const Camera& camera,
+                          std::array<std::uint32_t, 2> size, double nearDistance, double farthest) {
+    const std::string place = camera.name.empty() ? "camera" : fmt::format("camera {}", camera.name);
+    const auto refuse = [&](const std::string& fault, const char* remedy) {
+        throw InputError("", place, fault, remedy);
+    };
+    if (size[0] == 0 || size[1] == 0 || size[0] > kMaxRasterSize || size[1] > kMaxRasterSize)
+        refuse(fmt::format("image of {} x {} pixels", size[0], size[1]),
+               "choose 1 to 16384 pixels each way for the rasterizer");
+    const glm::dvec3 axisX(cameraToWorld[0]), axisY(cameraToWorld[1]), axisZ(cameraToWorld[2]);
+    const double lengths[3] = {glm::length(axisX), glm::length(axisY), glm::length(axisZ)};
+    for (double length : lengths)
+        if (!(length > 0.0) || !std::isfinite(length))
+            refuse("its transform is singular", "correct the node's transform");
+
+    RasterView view;
+    view.eye = glm::dvec3(cameraToWorld[3]);
+    view.width = size[0];
+    view.height = size[1];
+    view.rowW = -axisZ / lengths[2];
+    const glm::dvec3 right = axisX / lengths[0], up = axisY / lengths[1];
+    const double halfWidth = 0.5 * size[0], halfHeight = 0.5 * size[1];
+    if (camera.perspective) {
+        const double tangent = std::tan(0.5 * double(camera.yfov));
+        if (!(tangent > 0.0) || !(camera.yfov < 3.1415925f))
+            refuse("its field of view is not between 0 and pi", "correct yfov");
+        const double focal = halfHeight / tangent;  // pixels
+        view.rowX = focal * right + halfWidth * view.rowW;
+        view.rowY = -focal * up + halfHeight * view.rowW;
+        const double znear = camera.znear > 0.0f ? double(camera.znear) : 1.0;
+        view.depthOffset = nearDistance > 0.0 ? nearDistance : 1e-6 * znear;
+    } else {
+        if (!(std::abs(double(camera.ymag)) > 0.0)) refuse("its height is 0", "correct ymag");
+        const double scale = halfHeight / double(camera.ymag);  // pixels per unit
+        view.rowX = scale * right;
+        view.rowY = -scale * up;
+        view.orthographic = true;
+        const double begin = nearDistance;
+        double end = std::max(farthest, double(camera.znear) + 1.0);
+        if (std::isfinite(camera.zfar)) end = std::max(end, double(camera.zfar));
+        if (!(end > begin)) end = begin + 1.0;
+        view.depthSlope = -1.0 / (end - begin);
+        view.depthOffset = end / (end - begin);
+    }
+    return view;
+}
+
+}  // namespace helio
