@@ -9,23 +9,6 @@
 namespace helio::graph {
 namespace {
 
-std::string formatText(Format format) {
-    switch (format) {
-        case Format::Undefined: return "undefined";
-        case Format::R32UI: return "R32UI";
-        case Format::R32I: return "R32I";
-        case Format::R32F: return "R32F";
-        case Format::RG32UI: return "RG32UI";
-        case Format::RG32F: return "RG32F";
-        case Format::RGBA32UI: return "RGBA32UI";
-        case Format::RGBA32F: return "RGBA32F";
-        case Format::RGBA16F: return "RGBA16F";
-        case Format::RGBA8: return "RGBA8";
-        case Format::R8: return "R8";
-    }
-    return "";
-}
-
 template <std::size_t N>
 std::string joinNames(std::uint32_t bits, const std::pair<std::uint32_t, const char*> (&names)[N]) {
     std::string text;
@@ -88,7 +71,7 @@ std::vector<std::uint32_t> sharers(const Compiled& compiled, const Placement& mi
 
 std::string sizeText(const ResourceInput& resource) {
     if (resource.kind == ResourceKind::Buffer) return fmt::format("{} bytes", resource.bytes);
-    return fmt::format("{} x {} {}", resource.size[0], resource.size[1], formatText(resource.format));
+    return fmt::format("{} x {} {}", resource.size[0], resource.size[1], formatName(resource.format));
 }
 
 nlohmann::json barrierJson(const Input& input, const Barrier& barrier) {
@@ -122,7 +105,7 @@ nlohmann::json resourceJson(const Input& input, const Compiled& compiled, std::u
     if (image) {
         json["width"] = resource.size[0];
         json["height"] = resource.size[1];
-        json["format"] = formatText(resource.format);
+        json["format"] = formatName(resource.format);
     } else {
         json["bytes"] = resource.bytes;
     }
