@@ -6,6 +6,7 @@ set(heliograph_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/heliograph)
 
 install(TARGETS heliograph EXPORT heliograph_targets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS heliograph_image LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT heliograph_targets FILE heliographTargets.cmake NAMESPACE heliograph:: DESTINATION ${heliograph_package_dir})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/heliographConfig.cmake.in

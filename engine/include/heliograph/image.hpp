@@ -35,26 +35,29 @@ struct ImageF {
  * naming the file and the fault. */
 ImageF loadImage(const std::filesystem::path& file);
 
-/** Writes an image, whole or not at all (a temporary beside it, synced, then renamed). The extension chooses:
- * .exr float32 with all channels and metadata; .png 8-bit and .jpg take R, G, B, clamp to 0..1 and
- * sRGB-encode. Throws InputError for an extension or folder that cannot be written. */
+/** Writes an image, whole or not at all: a temporary ".NAME.PID-N.partial" beside it, synced, then renamed. The
+ * extension chooses: .exr float32 with all channels and metadata (an integer beyond 32 bits as its digits); .png
+ * 8-bit and .jpg or .jpeg (quality 95, no subsampling) take R, G, B, clamp to 0..1, NaN becoming 0, and
+ * sRGB-encode. The same image gives the same bytes. Throws InputError for an extension or folder that cannot be
+ * written, or a missing channel. */
 void saveImage(const std::filesystem::path& file, const ImageF& image);
 
 /** Exact sRGB transfer curve (IEC 61966-2-1), scalar, any sign kept. */
 double srgbEncode(double linear);
 double srgbDecode(double encoded);
 
-/** Difference of two images over R, G, B; pixels with a non-finite channel in either are counted, left out. */
+/** Difference of two images over R, G, B; pixels with a non-finite channel in either are counted, left out. The
+ * means are NaN where no pixel remains. */
 struct ImageDifference {
     double mse = 0;
     double rmse = 0;
     double relmse = 0;      ///< mean((x - r)^2 / (r^2 + 0.01))
-    double meanRatio = 0;   ///< mean(x) / mean(r)
+    double meanRatio = 0;   ///< mean(x) / mean(r); 1 where both means are 0
     std::uint32_t worstX = 0;
     std::uint32_t worstY = 0;
     double worstError = 0;  ///< largest absolute channel difference
-    std::uint64_t nan = 0;  ///< pixels with a NaN in the image
-    std::uint64_t inf = 0;
+    std::uint64_t nan = 0;  ///< pixels with a NaN in either image
+    std::uint64_t inf = 0;  ///< the others with an infinity in either
 };
 /** Compares an image with a reference of the same size. Throws InputError where sizes differ or R, G, B are
  * missing. */

@@ -1,0 +1,74 @@
+#include "engine/image/backend.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace helio {
+namespace {
+
+constexpr std::array<unsigned char, 8> pngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::array<unsigned char, 3> jpegMagic{0xff, 0xd8, 0xff};
+
+/** The folder of the library that this code is in, in the build tree and where it is installed alike. */
+std::filesystem::path libraryFolder() {
+    Dl_info info{};
+    static const int anchor = 0;
+    if (dladdr(&anchor, &info) == 0 || info.dli_fname == nullptr) return {};
+    return std::filesystem::absolute(info.dli_fname).parent_path();
+}
+
+const ImageBackend& loadBackend() {
+    const std::filesystem::path file = libraryFolder() / "libheliograph_image.so";
+    void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (module == nullptr) {
+        const char* const reason = dlerror();
+        throw Error("images cannot be read or written: " +
+                    std::string(reason != nullptr ? reason : file.c_str()));
+    }
+    const auto version = reinterpret_cast<const char* (*)()>(dlsym(module, "heliographImageVersion"));
+    const auto backend = reinterpret_cast<const ImageBackend* (*)()>(dlsym(module, "heliographImageBackend"));
+    if (version == nullptr || backend == nullptr || std::strcmp(version(), HELIOGRAPH_VERSION) != 0) {
+        throw Error("images cannot be read or written: " + file.string() +
+                    " is not of version " HELIOGRAPH_VERSION);
+    }
+    return *backend();
+}
+
+bool startsWith(std::span<const std::byte> file, std::span<const unsigned char> magic) {
+    return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+}
+
+}  // namespace
+
+const ImageBackend& imageBackend() {
+    static const ImageBackend& backend = loadBackend();
+    return backend;
+}
+
+bool isCutPng(std::span<const std::byte> file) {
+    if (!startsWith(file, pngMagic)) return false;
+    std::size_t at = pngMagic.size();
+    while (file.size() - at >= 12) {  // a chunk: length, name, data, checksum
+        std::uint64_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | std::to_integer<std::uint64_t>(file[at + i]);
+        if (length + 12 > file.size() - at) return true;
+        if (std::memcmp(&file[at + 4], "IEND", 4) == 0) return false;
+        at += length + 12;
+    }
+    return true;
+}
+
+std::string decodeImage(std::span<const std::byte> file, DecodedImage& image) {
+    if (isCutPng(file)) return "is cut off";
+    if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", image);
+    if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", image);
+    return "is neither PNG nor JPEG";
+}
+
+}  // namespace helio

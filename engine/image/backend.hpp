@@ -1,0 +1,56 @@
+#pragma once
+/** @file
+ * The file formats, behind a module of their own. OpenImageIO loads some 260 shared objects, which takes 0.15
+ * s: a program that touches no image file must not pay that. So OpenImageIO is linked to
+ * libheliograph_image.so alone, which lies beside libheliograph.so and is loaded at the first image.
+ * Everything crosses in memory; faults come back as text, so that no exception has to.
+ */
+#include <heliograph/image.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace helio {
+
+/** Pixels as a file stores them: 8 or 16 bits still encoded, floats linear. 4 channels, rows from the top;
+ * grey is spread to R, G, B, and a missing alpha is 1. Alpha is not premultiplied. */
+struct DecodedImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> texels;
+};
+
+/** What the module exports. Every function returns what went wrong, empty for success. */
+class ImageBackend {
+public:
+    virtual ~ImageBackend() = default;
+    virtual std::string read(const std::filesystem::path& file, ImageF& image) const = 0;
+    /** `format` is a file extension without its dot. */
+    virtual std::string decode(std::span<const std::byte> file, const std::string& format,
+                               DecodedImage& image) const = 0;
+    /** float32, all channels and the metadata. */
+    virtual std::string encodeExr(const ImageF& image, std::vector<std::byte>& file) const = 0;
+    /** 8-bit R, G, B, already encoded. `format` is png or jpg. */
+    virtual std::string encodeRgb8(std::span<const std::uint8_t> pixels, std::uint32_t width,
+                                   std::uint32_t height, const std::string& format,
+                                   std::vector<std::byte>& file) const = 0;
+};
+
+/** Loads the module on first use; thread safe. Throws Error, naming the file, where it is missing or of
+ * another version. */
+const ImageBackend& imageBackend();
+
+/** Whether the file is a PNG that is cut off. Checked first, since libpng reports that on standard error by
+ * itself. */
+bool isCutPng(std::span<const std::byte> file);
+
+/** Decodes an image file held in memory, PNG or JPEG by its first bytes. Returns the fault, empty for
+ * success. */
+std::string decodeImage(std::span<const std::byte> file, DecodedImage& image);
+
+}  // namespace helio
