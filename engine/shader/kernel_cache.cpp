@@ -63,7 +63,16 @@ bool stale(const CompiledGlsl& result) {
     return false;
 }
 
-Result compileCached(const std::string& path, const std::string& glsl, const KernelVariant& variant) {
+Kernel makeKernel(std::string_view name, std::string_view source, const Result& result) {
+    if (!result->ok)
+        throw ShaderError(fmt::format("kernel '{}' does not compile:\n{}", name, result->messages));
+    return {name, result->spirv, source};
+}
+
+}  // namespace
+
+std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const std::string& glsl,
+                                                  const KernelVariant& variant) {
     Cache& c = cache();
     const Key key{path, glsl, variant.defines, variant.generated};
     std::promise<Result> promise;
@@ -88,14 +97,6 @@ Result compileCached(const std::string& path, const std::string& glsl, const Ker
     promise.set_value(result);
     return result;
 }
-
-Kernel makeKernel(std::string_view name, std::string_view source, const Result& result) {
-    if (!result->ok)
-        throw ShaderError(fmt::format("kernel '{}' does not compile:\n{}", name, result->messages));
-    return {name, result->spirv, source};
-}
-
-}  // namespace
 
 KernelCacheStatistics kernelCacheStatistics() {
     return {cache().compiled, cache().reused};

@@ -48,6 +48,30 @@ Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant);
  * and thread-safe like compileVariant, which takes the result too. Throws ShaderError. */
 Kernel compileKernel(std::string_view name, std::string_view glsl, const KernelVariant& variant = {});
 
+/** Debug reload: watches the files that a kernel is made of in the folder HELIOGRAPH_SHADER_DIR (a source
+ * tree: it holds shaders/ and passes/) and compiles the kernel again when one has changed. An edit that does
+ * not compile keeps the last good kernel and says why. Without the folder nothing ever changes. Not
+ * thread-safe. */
+class KernelWatcher {
+public:
+    /** Starts with the kernel as given; the first poll() finds whether the folder's files differ from it. */
+    explicit KernelWatcher(const Kernel& kernel, KernelVariant variant = {});
+    ~KernelWatcher();
+    KernelWatcher(KernelWatcher&&) noexcept;
+    KernelWatcher& operator=(KernelWatcher&&) noexcept;
+
+    /** Looks at the files; true where kernel() is another one since the last call. Cheap enough for every
+     * frame. */
+    bool poll();
+    const Kernel& kernel() const;  ///< the last good one
+    const std::string& problem()
+        const;  ///< the compiler's messages of the present files; empty where they compile
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
 /** A file of the embedded GLSL tree: the path that an #include names, and its text. */
 struct ShaderSource {
     std::string_view path;
