@@ -23,7 +23,7 @@ FN Vec3 encodeSrgb(Vec3 linear) {
 
 /// The sRGB code value to linear light.
 FN Real decodeSrgb(Real encoded) {
-    Real curve = realPow((max(encoded, REAL(0.04)) + REAL(0.055)) * REAL(0.947867298578199052133), REAL(2.4));
+    Real curve = realPow((max(encoded, REAL(0.04)) + REAL(0.055)) / REAL(1.055), REAL(2.4));
     return encoded <= REAL(0.04045) ? encoded * REAL(0.0773993808049535603715) : curve;
 }
 FN Vec3 decodeSrgb(Vec3 encoded) {

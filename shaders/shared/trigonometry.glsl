@@ -29,9 +29,12 @@ FN Real reduceQuadrant(Real x, OUT(Real) low, OUT(int) quadrant) {
     precise Real k = roundEven(clamp(x, -4194304.0, 4194304.0) * REAL(0.636619772367581343076));
     // Multiples of 2^-24 below 1: these three are exact.
     precise Real near = ((x - k * 1.5703125) - k * 0.0004825592041015625) - k * REAL(1.2516975402832031e-06);
+    // From here on each difference is exact where it is small, and its rounding error is kept where it is not.
     precise Real part = k * REAL(1.5832483768463135e-08);
-    precise Real r = near - part;
-    precise Real rest = (((near - r) - part) - k * REAL(6.0481397667899728e-11)) - k * REAL(2.8960739513993194e-13);
+    precise Real nearer = near - part;
+    precise Real part2 = k * REAL(6.0481397667899728e-11);
+    precise Real r = nearer - part2;
+    precise Real rest = (((near - nearer) - part) + ((nearer - r) - part2)) - k * REAL(2.8960739513993194e-13);
     precise Real sum = r + rest;
     low = rest - (sum - r);
     quadrant = int(isnan(x) ? 0.0 : k);
@@ -48,7 +51,8 @@ FN void realSinCos(Real x, OUT(Real) sine, OUT(Real) cosine) {
     bool swap = (quadrant & 1) != 0;
     Real s1 = swap ? c : s;
     Real c1 = swap ? s : c;
-    sine = (quadrant & 2) != 0 ? -s1 : s1;
+    // A tiny x is its own sine; the reduction would lose the sign of -0.
+    sine = abs(x) < REAL(2e-4) ? x : (quadrant & 2) != 0 ? -s1 : s1;
     cosine = ((quadrant + 1) & 2) != 0 ? -c1 : c1;
 }
 
@@ -70,7 +74,8 @@ FN Real realTan(Real x) {
     Real r = reduceQuadrant(x, low, quadrant);
     Real s = sinKernel(r, low);
     Real c = cosKernel(r, low);
-    return (quadrant & 1) != 0 ? -c / s : s / c;
+    Real y = (quadrant & 1) != 0 ? -c / s : s / c;
+    return abs(x) < REAL(2e-4) ? x : y;
 }
 
 /// sin(2 pi u) and cos(2 pi u): cheaper than realSinCos, and exact in its reduction for every u. What azimuths of
@@ -168,10 +173,9 @@ FN Real realAtan2(Real y, Real x) {
     Real ay = abs(y);
     Real low = min(ax, ay);
     Real high = max(ax, ay);
-    // A quotient's error must not come from a subnormal: both are scaled into the middle of the range.
-    bool bothInfinite = isinf(low);
-    Real scale = high > REAL(1e18) ? REAL(5.421010862427522e-20) : REAL(18446744073709551616.0);
-    Real t = bothInfinite ? 1.0 : high == 0.0 ? 0.0 : (low * scale) / (high * scale);
+    // Vulkan leaves quotients open where the divisor's inverse would be subnormal.
+    Real scale = high > REAL(4e37) ? 0.25 : 1.0;
+    Real t = isinf(low) ? 1.0 : high == 0.0 ? 0.0 : (low * scale) / (high * scale);
     Real a = atanKernel(t);
     precise Real steep = HALF_PI - (a + REAL(4.37113883e-08));
     a = ay > ax ? steep : a;
