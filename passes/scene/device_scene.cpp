@@ -36,7 +36,8 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uColors", info_.colors, Format::Undefined);
     upload("uMaterials", info_.materials, Format::Undefined);
     upload("uLights", info_.lights, Format::Undefined);
-    upload("uTextures", info_.textures, Format::Undefined);
+    std::vector<glm::uvec4> textures = info_.textures;  // the headers stay: mip levels are laid out from them
+    upload("uTextures", textures, Format::Undefined);
     upload("uTexels8", info_.texels8, Format::R32UI);
     upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
     upload("uInstanceFirst", info_.instanceFirst, Format::R32UI);

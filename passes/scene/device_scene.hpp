@@ -28,7 +28,7 @@ public:
     /** The named specialization constants of shaders/scene/features.glsl, with this scene's values. */
     SpecConstants constants(std::initializer_list<std::string_view> names) const;
 
-    /** What was packed, without the arrays (they are on the device). */
+    /** What was packed, without the arrays (they are on the device) but for `textures`. */
     const PackedScene& info() const { return info_; }
     /** Bytes on the device. */
     std::uint64_t deviceBytes() const;

@@ -27,6 +27,7 @@ const std::array<double, 256>& decodeTable() {
 constexpr std::uint32_t kWrapVShift = 2;
 constexpr std::uint32_t kNearest = 1u << 4;
 constexpr std::uint32_t kFloat = 1u << 5;
+constexpr std::uint32_t kMipmaps = 1u << 6;
 
 /** Packs textures used as colour once each and gives their place. */
 class TexturePacker {
@@ -51,6 +52,7 @@ public:
         std::uint32_t flags = std::uint32_t(texture.wrapU) | std::uint32_t(texture.wrapV) << kWrapVShift;
         if (texture.magFilter == Filter::Nearest) flags |= kNearest;
         if (!eightBits) flags |= kFloat;
+        if (texture.useMipmaps) flags |= kMipmaps;
         packed_.textures.emplace_back(addImage(texture.image), image.width, image.height, flags);
         return place->second;
     }
