@@ -1,0 +1,39 @@
+#pragma once
+/** @file The error of an unfinished image, estimated from the film's two halves. */
+#include <heliograph/renderer.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace helio {
+
+/** What the resolve pass brings back: four floats per pixel, rows from the top. */
+struct FilmImages {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<float> mean;      ///< R G B, number of samples
+    std::vector<float> variance;  ///< of the mean if samples were independent; rejected samples
+    std::vector<float>
+        difference;  ///< its square is an unbiased estimate of the mean's variance; 1 if there is one
+};
+
+/** Estimates the image's relMSE, mean((x - truth)^2 / (truth^2 + 0.01)), with a 95 % interval for the
+ * realised error of this very image.
+ *
+ * Let a, b be the errors of the independent halves and x = (a + b) / 2 that of the mean. The half difference
+ * is d = (a - b) / 2, and d^2 - x^2 = -a b has expectation 0 for any distribution: the sum of d^2 follows the
+ * realised error, fireflies included, and its uncertainty needs no higher moments than Var(a) Var(b), which
+ * 4/3 d^4 bounds on average (equality for normal errors).
+ *
+ * The denominator never takes a pixel's value where noise dominates it: a value is drawn towards the mean of
+ * its neighbours unless it differs from them by more than its noise explains. How much that choice matters
+ * widens the interval. `reliable` is false with fewer than 8 samples, where so few pixels carry the error
+ * that the normal approximation fails, or where pixels are so noisy that the choice of denominator matters
+ * much. Without two halves, neighbouring pixels stand in and the result is not reliable. */
+ErrorEstimate estimateError(const FilmImages& images);
+
+/** The variance of the mean that the two halves measure over that of independent samples, over the whole
+ * image: about 1 for independent samples, less for stratified ones. 1 where there is nothing to compare. */
+double stratificationGain(const FilmImages& images);
+
+}  // namespace helio
