@@ -56,12 +56,12 @@ FN void addToDoubleSingle(INOUT(Vec3) hi, INOUT(Vec3) lo, Vec3 b) {
 
 /// x = leading + trailing, where the leading part has 12 significant bits, so that both times an integer below
 /// 4096 are exact (the trailing part has at most 12 as well).
-FN Real leadingBits(Real x) { return uintBitsToFloat(floatBitsToUint(float(x)) & 0xfffff000u); }
-FN Vec3 leadingBits(Vec3 v) { return Vec3(leadingBits(v.x), leadingBits(v.y), leadingBits(v.z)); }
+FN Real filmLeadingBits(Real x) { return uintBitsToFloat(floatBitsToUint(float(x)) & 0xfffff000u); }
+FN Vec3 filmLeadingBits(Vec3 v) { return Vec3(filmLeadingBits(v.x), filmLeadingBits(v.y), filmLeadingBits(v.z)); }
 
 /// Adds count * value to hi + lo without rounding the product; count is an integer below 2^24.
 FN void addProduct(INOUT(Vec3) hi, INOUT(Vec3) lo, Real count, Vec3 value) {
-    Vec3 leading = leadingBits(value);
+    Vec3 leading = filmLeadingBits(value);
     Vec3 trailing = value - leading;
     Real high = floor(count * REAL(0.000244140625)) * REAL(4096.0);
     Real low = count - high;
@@ -111,11 +111,13 @@ FN FilmBatch startFilmBatch(FilmPixel p) {
     return FilmBatch(filmMean(p), zero, zero, zero, REAL(0.0), REAL(0.0), REAL(0.0), filmCount(p) > REAL(0.0));
 }
 
+/// Samples above this are rejected as if they were infinite: 2^24 of them must not overflow a sum.
+CONST Real FILM_LARGEST = REAL(1.2676506002282294e+30);  // 2^100
+
 /// Adds a sample. One that is not finite is left out and counted.
 FN void addFilmSample(INOUT(FilmBatch) b, uint sampleIndex, Vec3 value) {
-    Real largest = max(max(abs(value.x), abs(value.y)), abs(value.z));
-    bool finite = largest <= REAL(3.4028234663852886e+38) && value.x == value.x && value.y == value.y &&
-                  value.z == value.z;
+    // A comparison with a NaN is false.
+    bool finite = abs(value.x) <= FILM_LARGEST && abs(value.y) <= FILM_LARGEST && abs(value.z) <= FILM_LARGEST;
     // The first sample ever of a pixel is its own shift.
     b.shift = (b.shifted || !finite) ? b.shift : value;
     b.shifted = b.shifted || finite;
@@ -137,7 +139,11 @@ FN FilmPixel mergeFilmBatch(FilmPixel p, FilmBatch b) {
     p.rejected += b.rejected;
     if (n > REAL(0.0)) {
         Vec3 offset = (b.sumA + b.sumB) / n;  // batch mean - shift
-        Vec3 own = max(b.squares - (b.sumA + b.sumB) * offset, Vec3(0.0));
+        // Squares of huge samples may be infinite, and then the variance is.
+        Vec3 own = b.squares - (b.sumA + b.sumB) * offset;
+        own = Vec3(isinf(b.squares.x) ? b.squares.x : max(own.x, Real(0.0)),
+                   isinf(b.squares.y) ? b.squares.y : max(own.y, Real(0.0)),
+                   isinf(b.squares.z) ? b.squares.z : max(own.z, Real(0.0)));
         // (stored mean - shift), exact to the last bit: the shift is the rounded mean.
         Vec3 residual = Vec3(0.0);
         if (stored > REAL(0.0)) {
@@ -149,7 +155,7 @@ FN FilmPixel mergeFilmBatch(FilmPixel p, FilmBatch b) {
             residual = (hi + lo) / stored;
         }
         Vec3 between = offset - residual;
-        addToDoubleSingle(p.deviation, p.deviationLow, own + between * between * (stored * n / (stored + n)));
+        addToDoubleSingle(p.deviation, p.deviationLow, own + between * (between * (stored * n / (stored + n))));
         addProduct(p.sumA, p.sumALow, b.countA, b.shift);
         addToDoubleSingle(p.sumA, p.sumALow, b.sumA);
         addProduct(p.sumB, p.sumBLow, b.countB, b.shift);
