@@ -7,12 +7,20 @@
 //   FilmBatch batch = startFilmBatch(stored);
 //   for each sample: addFilmSample(batch, sampleIndex, radiance);
 //   storeFilm(pixel, mergeFilmBatch(stored, batch));
+// A kernel that only reads or only writes it defines FILM_READ_ONLY or FILM_WRITE_ONLY.
 #ifndef SHADERS_FILM_FILM_GLSL
 #define SHADERS_FILM_FILM_GLSL
 #include "shaders/film/accumulate.glsl"
 
+#if defined(FILM_READ_ONLY)
+layout(binding = FILM_BINDING, rgba32f) readonly uniform image2D uFilm;
+#elif defined(FILM_WRITE_ONLY)
+layout(binding = FILM_BINDING, rgba32f) writeonly uniform image2D uFilm;
+#else
 layout(binding = FILM_BINDING, rgba32f) uniform image2D uFilm;
+#endif
 
+#ifndef FILM_WRITE_ONLY
 FilmPixel loadFilm(ivec2 pixel) {
     ivec2 corner = pixel * ivec2(2, 3);
     vec4 a = imageLoad(uFilm, corner);
@@ -23,7 +31,9 @@ FilmPixel loadFilm(ivec2 pixel) {
     vec4 dLow = imageLoad(uFilm, corner + ivec2(1, 2));
     return FilmPixel(a.xyz, aLow.xyz, b.xyz, bLow.xyz, d.xyz, dLow.xyz, a.w, b.w, d.w);
 }
+#endif
 
+#ifndef FILM_READ_ONLY
 void storeFilm(ivec2 pixel, FilmPixel p) {
     ivec2 corner = pixel * ivec2(2, 3);
     imageStore(uFilm, corner, vec4(p.sumA, p.countA));
@@ -33,5 +43,6 @@ void storeFilm(ivec2 pixel, FilmPixel p) {
     imageStore(uFilm, corner + ivec2(0, 2), vec4(p.deviation, p.rejected));
     imageStore(uFilm, corner + ivec2(1, 2), vec4(p.deviationLow, 0.0));
 }
+#endif
 
 #endif
