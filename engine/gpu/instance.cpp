@@ -25,6 +25,13 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
         log().debug("Vulkan loader: {}", message);
         return VK_FALSE;
     }
+    // Images stay in layout GENERAL, which is what storage images need; where a copy reads or writes one, the
+    // layer advises another layout. That is advice about speed, not a fault.
+    constexpr std::int32_t kOtherLayoutIsFaster = 0x4dae5635;
+    if (types == VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT &&
+        data->messageIdNumber == kOtherLayoutIsFaster) {
+        return VK_FALSE;
+    }
     const char* word = severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT ? "error" : "warning";
     static_cast<ValidationLog*>(user)->add(std::string(word) + ": " + message);
     return VK_FALSE;

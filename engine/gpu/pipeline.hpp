@@ -30,10 +30,10 @@ struct BindingSlot {
 struct ComputePipelineInfo {
     std::string name;                      ///< for messages; not part of its identity
     std::span<const std::uint32_t> spirv;  ///< entry point "main"
-    std::vector<BindingSlot> bindings;
+    std::vector<BindingSlot> bindings = {};
     std::uint32_t pushConstantBytes = 0;
-    std::vector<std::pair<std::uint32_t, SpecValue>> spec;  ///< constant_id and value
-    std::uint32_t subgroupSize = 0;                         ///< required size, 0 for the device's choice
+    std::vector<std::pair<std::uint32_t, SpecValue>> spec = {};  ///< constant_id and value
+    std::uint32_t subgroupSize = 0;                              ///< required size, 0 for the device's choice
 };
 
 struct ComputePipeline {
