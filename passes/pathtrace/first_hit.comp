@@ -1,0 +1,40 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+/** @file What the ray through each pixel's centre meets first: ids, depth, shading normal, base colour. */
+#include "passes/pathtrace/camera.glsl"
+#include "passes/pathtrace/surface.glsl"
+#include "shaders/intersection/scene_hit.glsl"
+
+layout(local_size_x = 64) in;
+
+/** See FirstHitParameters in passes/pathtrace/path_tracer.cpp. */
+layout(push_constant) uniform Parameters {
+    CameraFrame camera;
+    uvec2 size;
+} parameters;
+
+layout(set = 0, binding = 0, rgba32f) writeonly uniform image2D uIds;     ///< instance, triangle, depth, 0
+layout(set = 0, binding = 1, rgba32f) writeonly uniform image2D uNormal;
+layout(set = 0, binding = 2, rgba32f) writeonly uniform image2D uAlbedo;
+layout(set = 0, binding = 30) uniform usamplerBuffer uInstanceFirst;  ///< R32UI: first g of each instance
+
+void main() {
+    const uvec2 pixel = tilePixel(parameters.size);
+    if (any(greaterThanEqual(pixel, parameters.size))) return;
+    vec3 origin, direction;
+    cameraRay(parameters.camera, vec2(pixel) + 0.5, parameters.size, origin, direction);
+    float distance;
+    int slot;
+    closestHit(origin, direction, -1, distance, slot);
+    const bool hit = slot >= 0;
+    const SurfacePoint s = surfaceAt(origin, direction, max(slot, 0));
+    const int first = int(texelFetch(uInstanceFirst, s.triangle.instance).x);
+    const float depth = dot(s.position - parameters.camera.origin.xyz, parameters.camera.forward.xyz);
+    const vec3 albedo = baseColor(s.triangle.material, s.triangle.g, s.b).rgb;
+    // Ids are exact as floats: there are fewer than 2^24 triangles.
+    imageStore(uIds, ivec2(pixel),
+               hit ? vec4(float(s.triangle.instance), float(s.triangle.g - first), depth, 0.0) : vec4(-1.0, -1.0, 0.0, 0.0));
+    imageStore(uNormal, ivec2(pixel), vec4(hit ? s.shading : vec3(0.0), 0.0));
+    imageStore(uAlbedo, ivec2(pixel), vec4(hit ? albedo : vec3(0.0), 0.0));
+}

@@ -1,0 +1,102 @@
+#ifndef HELIOGRAPH_PATHTRACE_PATH
+#define HELIOGRAPH_PATHTRACE_PATH
+/** @file
+ * One step of a light path: what is added where a ray arrives, and how the path goes on. Knows nothing of how
+ * paths are scheduled. Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
+ *
+ * Surfaces are Lambertian on both faces. Light is found in two ways, by sampling the light table and by rays
+ * that happen to arrive at it, each weighted by the balance heuristic; NEXT_EVENT false leaves the second only.
+ */
+#include "passes/pathtrace/surface.glsl"
+#include "shaders/sampling/sampler.glsl"
+#include "shaders/sampling/warp.glsl"
+#include "shaders/scene/lights.glsl"
+
+layout(constant_id = 0) const uint SAMPLER_KIND = SAMPLER_SOBOL;
+layout(constant_id = 1) const bool NEXT_EVENT = true;
+
+/** Roulette keeps a path with chance min(1, ROULETTE * throughput): chances near the throughput itself end
+ * paths that would still have carried light cheaply. */
+const float ROULETTE = 3.0;
+/** Dimensions of the sampler that one scattering takes: point on a light, direction, (light, roulette). */
+const uint DIMENSIONS_PER_SCATTERING = 3u;
+
+struct Path {
+    vec3 origin;
+    vec3 direction;    ///< unit
+    vec3 throughput;
+    vec3 radiance;     ///< gathered so far
+    float density;     ///< of the direction over solid angle; negative for a camera ray
+    uint depth;        ///< scatterings so far
+    uint sampleIndex;
+    int source;        ///< slot of the triangle the ray leaves, -1 for the camera
+};
+
+/** A question to the scene: is the way to a light free, and what does it then bring? */
+struct ShadowRay {
+    vec3 origin;
+    vec3 direction;  ///< not unit: the light is at distance 1 (or infinite)
+    float limit;     ///< 0 where there is nothing to ask
+    vec3 radiance;
+};
+
+float largestOf(vec3 v) {
+    return max(max(v.x, v.y), v.z);
+}
+
+/**
+ * Takes the path through what its ray met: adds emission or environment, gives a shadow ray to be asked (its
+ * radiance to be added if the way is free), and the next ray. Returns whether the path goes on; `cut` is set
+ * where it ends only because of maxDepth.
+ */
+bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth, vec3 environment,
+             out ShadowRay shadow, out bool cut) {
+    const bool hit = slot >= 0;
+    const SurfacePoint s = surfaceAt(path.origin, path.direction, max(slot, 0));
+    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environment;
+    if (HAS_EMISSION) {
+        const Emission e = emission(s.triangle.material, s.triangle.g, s.b);
+        const bool emits = hit && (s.front || e.doubleSided);
+        float weight = 1.0;
+        if (NEXT_EVENT && HAS_AREA_LIGHTS) {
+            const float cosine = abs(dot(s.face, path.direction));
+            const float sampled = cosine > 0.0 ? e.areaDensity * distance * distance / cosine : 0.0;
+            weight = path.density < 0.0 ? 1.0 : path.density / (path.density + sampled);
+        }
+        path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);
+    }
+
+    const vec3 albedo = baseColor(s.triangle.material, s.triangle.g, s.b).rgb;
+    const bool scatters = hit && largestOf(albedo) > 0.0;
+    cut = scatters && path.depth >= maxDepth;
+    bool alive = scatters && !cut;
+    const uint dimension = DIMENSION_PATH + path.depth * DIMENSIONS_PER_SCATTERING;
+    const vec2 choice = sample2D(SAMPLER_KIND, numbers, dimension + 2u);
+    const vec3 start = s.position + s.face * s.offset;
+
+    shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0));
+    if ((NEXT_EVENT && HAS_AREA_LIGHTS) || HAS_PUNCTUAL_LIGHTS) {
+        const LightSample light = sampleLight(s.position, choice.x, sample2D(SAMPLER_KIND, numbers, dimension));
+        const float cosine = dot(s.shading, light.direction);
+        const float scattered = cosine * INV_PI;
+        const float weight = light.density > 0.0 ? light.density / (light.density + scattered) : 1.0;
+        shadow.radiance = path.throughput * albedo * light.radiance * (scattered * weight);
+        shadow.direction = light.infinite ? light.direction : light.target - start;
+        const bool asks = alive && cosine > 0.0 && dot(s.face, light.direction) > 0.0 &&
+                          largestOf(light.radiance) > 0.0;
+        shadow.limit = asks ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
+    }
+
+    float cosine;
+    path.direction = cosineDirection(s.shading, sample2D(SAMPLER_KIND, numbers, dimension + 1u), cosine);
+    path.density = cosine * INV_PI;
+    path.throughput *= albedo;
+    path.origin = start;
+    path.source = slot;
+    path.depth += 1u;
+    const float keep = min(1.0, ROULETTE * largestOf(path.throughput));
+    alive = alive && dot(s.face, path.direction) > 0.0 && choice.y < keep;
+    path.throughput /= keep;
+    return alive;
+}
+#endif

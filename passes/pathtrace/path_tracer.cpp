@@ -1,0 +1,223 @@
+#include "passes/pathtrace/path_tracer.hpp"
+
+#include "passes/pathtrace/camera_frame.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+#include <heliograph_kernels/pathtrace.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+namespace helio {
+namespace {
+
+/** Push constants of trace.comp. */
+struct TraceParameters {
+    CameraFrame camera;
+    glm::vec4 environment;
+    std::array<std::uint32_t, 2> size;
+    std::uint32_t sampleEnd;
+    std::uint32_t seed;
+    std::uint32_t maxDepth;
+    std::uint32_t countCut;
+    std::uint32_t budget;
+    std::uint32_t begin;
+};
+static_assert(sizeof(TraceParameters) == 112);
+
+/** Push constants of first_hit.comp. */
+struct FirstHitParameters {
+    CameraFrame camera;
+    std::array<std::uint32_t, 2> size;
+};
+static_assert(sizeof(FirstHitParameters) == 72);
+
+/** uCounters of trace.comp. */
+struct DeviceCounters {
+    std::uint32_t open, unused;
+    std::uint64_t camera, bounce, shadow, cut, abandoned;
+};
+static_assert(sizeof(DeviceCounters) == 48);
+
+constexpr std::initializer_list<std::string_view> kSurfaceBuffers = {
+    "uTriangles", "uNodes",    "uNormals", "uTexcoords",  "uColors",
+    "uMaterials", "uTextures", "uTexels8", "uTexelsFloat"};
+constexpr std::initializer_list<std::string_view> kSurfaceConstants = {
+    "HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_FLOAT_TEXTURES", "TRIANGLE_COUNT"};
+
+/** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
+std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size) {
+    const std::uint64_t tiles = std::uint64_t((size[0] + 7) / 8) * ((size[1] + 7) / 8);
+    constexpr std::uint64_t most = 65535;
+    const std::uint64_t rows = (tiles + most - 1) / most;
+    return {std::uint32_t((tiles + rows - 1) / rows), std::uint32_t(rows)};
+}
+
+}  // namespace
+
+struct PathTracer::Impl {
+    Impl(Device& device, DeviceScene& sceneIn, const Camera& camera, const glm::dmat4& transform,
+         const PathTraceOptions& optionsIn, DeviceImage& film)
+        : device_(device),
+          scene_(sceneIn),
+          options_(optionsIn),
+          frame_(cameraFrame(camera, transform, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
+          orthographic_(!camera.perspective),
+          state_(device, "pathtrace.state", optionsIn.size[0] * 4, optionsIn.size[1] * 2, Format::RGBA32F),
+          counters_(device, "pathtrace.counters", sizeof(DeviceCounters)) {
+        assert(film.width() == options_.size[0] * 2 && film.height() == options_.size[1] * 3);
+        assert(options_.turnBudget >= 1 && options_.turnBudget <= 33000);
+        const DeviceCounters zero{};
+        counters_.upload(&zero, sizeof zero);
+        skipped_ = scene_.info().skipped;
+        declareTrace(film);
+    }
+
+    SpecConstants constants() const {
+        SpecConstants spec = scene_.constants(kSurfaceConstants);
+        spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
+        spec["USE_TREE"] = scene_.info().nodeCount > 0;
+        spec["ORTHOGRAPHIC"] = orthographic_;
+        return spec;
+    }
+
+    void declareTrace(DeviceImage& film) {
+        Graph graph(device_);
+        const Image state = graph.import(state_);
+        const Image filmImage = graph.import(film);
+        const Buffer counters = graph.import(counters_);
+        SpecConstants spec = constants();
+        spec.merge(scene_.constants({"HAS_EMISSION", "HAS_EMISSION_TEXTURES", "HAS_AREA_LIGHTS",
+                                     "HAS_PUNCTUAL_LIGHTS", "HAS_ENVIRONMENT", "LIGHT_COUNT",
+                                     "HAS_TRIANGLE_LIGHTS"}));
+        spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
+        spec["FILTER_KIND"] = std::uint32_t(options_.filter);
+        spec["NEXT_EVENT"] = options_.nextEventEstimation;
+        spec["COUNT_TURNS"] = scene_.info().nodeCount > 0;
+        graph.compute("trace", shaders::trace, {.spec = spec})
+            .reads(scene_.bindings(graph, kSurfaceBuffers))
+            .reads(scene_.bindings(graph, {"uLights"}))
+            .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
+            .record([this](Commands& commands) {
+                const auto groups = groupsFor(options_.size);
+                commands.push(parameters_).dispatch(groups[0], groups[1]);
+            });
+        counted_ = graph.readback<DeviceCounters>(counters);
+        plan_ = graph.compile();
+    }
+
+    bool advance(std::uint32_t sampleEnd) {
+        assert(sampleEnd < (1u << 24));
+        const std::uint32_t open = 0;
+        counters_.upload(&open, sizeof open);
+        parameters_ = {frame_,
+                       glm::vec4(scene_.info().environment, 0.0f),
+                       options_.size,
+                       sampleEnd,
+                       options_.seed,
+                       std::min(options_.maxDepth, kUnlimitedDepth),
+                       options_.maxDepth >= kUnlimitedDepth ? 1u : 0u,
+                       options_.turnBudget,
+                       begun_ ? 0u : 1u};
+        begun_ = true;
+        const Execution execution = plan_.execute();
+        last_ = counted_.wait(execution).at(0);
+        for (const PassTiming& timing : plan_.timings(execution)) {
+            const auto known = std::ranges::find(timings_, timing.name, &PassTiming::name);
+            if (known == timings_.end())
+                timings_.push_back(timing);
+            else
+                known->milliseconds += timing.milliseconds;
+        }
+        return last_.open == 0;
+    }
+
+    FirstHits firstHits() {
+        const std::size_t pixels = std::size_t(options_.size[0]) * options_.size[1];
+        Graph graph(device_);
+        const Image ids = graph.image("first_hit.ids", {options_.size, Format::RGBA32F});
+        const Image normals = graph.image("first_hit.normals", {options_.size, Format::RGBA32F});
+        const Image albedos = graph.image("first_hit.albedos", {options_.size, Format::RGBA32F});
+        const FirstHitParameters parameters{frame_, options_.size};
+        graph.compute("first hit", shaders::first_hit, {.spec = constants()})
+            .reads(scene_.bindings(graph, kSurfaceBuffers))
+            .reads(scene_.bindings(graph, {"uInstanceFirst"}))
+            .overwrites({{"uIds", ids}, {"uNormal", normals}, {"uAlbedo", albedos}})
+            .record([&](Commands& commands) {
+                const auto groups = groupsFor(options_.size);
+                commands.push(parameters).dispatch(groups[0], groups[1]);
+            });
+        const auto readIds = graph.readback<glm::vec4>(ids);
+        const auto readNormals = graph.readback<glm::vec4>(normals);
+        const auto readAlbedos = graph.readback<glm::vec4>(albedos);
+        Plan plan = graph.compile();
+        const Execution execution = plan.execute();
+        FirstHits hits;
+        for (const glm::vec4& texel : readIds.wait(execution)) {
+            hits.instance.push_back(std::int32_t(texel.x));
+            hits.triangle.push_back(std::int32_t(texel.y));
+            hits.depth.push_back(texel.z);
+        }
+        for (const glm::vec4& texel : readNormals.wait(execution)) hits.normal.emplace_back(texel);
+        for (const glm::vec4& texel : readAlbedos.wait(execution)) hits.albedo.emplace_back(texel);
+        assert(hits.depth.size() == pixels);
+        (void)pixels;
+        return hits;
+    }
+
+    Device& device_;
+    DeviceScene& scene_;
+    PathTraceOptions options_;
+    CameraFrame frame_;
+    bool orthographic_;
+    DeviceImage state_;
+    DeviceBuffer counters_;
+    TraceParameters parameters_{};
+    Plan plan_;
+    Readback<DeviceCounters> counted_;
+    DeviceCounters last_{};
+    bool begun_ = false;
+    std::vector<PassTiming> timings_;
+    std::vector<std::pair<std::string, std::string>> skipped_;
+};
+
+PathTracer::PathTracer(Device& device, DeviceScene& scene, const Camera& camera,
+                       const glm::dmat4& cameraTransform, const PathTraceOptions& options, DeviceImage& film)
+    : impl_(std::make_unique<Impl>(device, scene, camera, cameraTransform, options, film)) {}
+PathTracer::~PathTracer() = default;
+PathTracer::PathTracer(PathTracer&&) noexcept = default;
+PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
+
+PackOptions PathTracer::packOptions(const Scene&, const PathTraceOptions& options) {
+    return {.tree = true, .sampleSurfaces = options.nextEventEstimation};
+}
+
+bool PathTracer::advance(std::uint32_t sampleEnd) {
+    return impl_->advance(sampleEnd);
+}
+
+PathCounters PathTracer::counters() const {
+    const DeviceCounters& c = impl_->last_;
+    return {c.camera, c.bounce, c.shadow, c.cut, c.abandoned};
+}
+
+FirstHits PathTracer::firstHits() {
+    return impl_->firstHits();
+}
+
+std::vector<PassTiming> PathTracer::timings() const {
+    return impl_->timings_;
+}
+
+std::string PathTracer::graphviz() const {
+    return impl_->plan_.graphviz();
+}
+
+const std::vector<std::pair<std::string, std::string>>& PathTracer::skipped() const {
+    return impl_->skipped_;
+}
+
+}  // namespace helio

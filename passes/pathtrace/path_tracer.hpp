@@ -1,0 +1,95 @@
+#pragma once
+/** @file
+ * Path tracing of a device scene into a film: resumable dispatches of one kernel, and a pass for what each
+ * pixel's centre sees first.
+ *
+ *     DeviceScene scene(device, source, PathTracer::packOptions(options));
+ *     DeviceImage film(device, "film", 2 * width, 3 * height, Format::RGBA32F);   // zeroed, see engine/film
+ *     PathTracer tracer(device, scene, camera, placed.transform, options, film);
+ *     for (std::uint32_t end = 1; end <= samples; ++end)
+ *         while (!tracer.advance(end)) reportProgress(tracer.counters());
+ */
+#include "passes/scene/device_scene.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/graph.hpp>
+#include <heliograph/renderer.hpp>
+#include <heliograph/scene.hpp>
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace helio {
+
+/** What "unlimited" means for a path: longer ones are cut and counted. */
+inline constexpr std::uint32_t kUnlimitedDepth = 65536;
+
+struct PathTraceOptions {
+    std::array<std::uint32_t, 2> size = {0, 0};  ///< pixels
+    std::uint32_t maxDepth = kUnlimitedDepth;    ///< scatterings at most: 0 emission only, 1 direct light
+    bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
+    SamplerKind sampler = SamplerKind::Sobol;
+    PixelFilter filter = PixelFilter::Box;
+    std::uint32_t seed = 0;
+    /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
+     * word after 65,535 turns, of which two rays may take 16,000 each. */
+    std::uint32_t turnBudget = 30000;
+};
+
+/** Totals since the tracer was made; exact. */
+struct PathCounters {
+    std::uint64_t cameraRays = 0, bounceRays = 0, shadowRays = 0;
+    std::uint64_t truncatedPaths =
+        0;  ///< cut at kUnlimitedDepth; paths cut at a lower maxDepth are not counted
+    std::uint64_t abandonedRays = 0;  ///< given up in the tree; 0 unless thousands of triangles coincide
+};
+
+/** What the ray through each pixel's centre meets first. Rows from the top. */
+struct FirstHits {
+    std::vector<std::int32_t> instance, triangle;  ///< -1 for a miss; triangle counts within the mesh
+    std::vector<float> depth;                      ///< distance along the camera's -z; 0 for a miss
+    std::vector<glm::vec3> normal;                 ///< unit shading normal towards the camera; 0 for a miss
+    std::vector<glm::vec3> albedo;                 ///< linear base colour; 0 for a miss
+};
+
+/** Traces one view of one scene. The device, scene and film must outlive it. Move-only. */
+class PathTracer {
+public:
+    /** `film`: RGBA32F of twice the width and three times the height, zeroed (shaders/film/film.glsl).
+     * Compiles the kernels' pipelines; the driver finishes compiling at the first dispatch. */
+    PathTracer(Device& device, DeviceScene& scene, const Camera& camera, const glm::dmat4& cameraTransform,
+               const PathTraceOptions& options, DeviceImage& film);
+    ~PathTracer();
+    PathTracer(PathTracer&&) noexcept;
+    PathTracer& operator=(PathTracer&&) noexcept;
+
+    /** How a scene must be packed for these options. */
+    static PackOptions packOptions(const Scene& scene, const PathTraceOptions& options);
+
+    /** One dispatch towards `sampleEnd` samples in every pixel; true when all have them and are merged into
+     * the film. sampleEnd must not fall from call to call, nor rise before true was returned. At most 4096
+     * samples more than were reached before, and 2^24 in all. */
+    bool advance(std::uint32_t sampleEnd);
+
+    PathCounters counters() const;
+    FirstHits firstHits();
+
+    /** Device times of all dispatches so far, by pass. */
+    std::vector<PassTiming> timings() const;
+    /** Graphviz of the tracing plan. */
+    std::string graphviz() const;
+    /** What in the scene and options the kernels do not show (yet), and what the scene did not need. */
+    const std::vector<std::pair<std::string, std::string>>& skipped() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace helio

@@ -1,0 +1,156 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+/** @file
+ * Regenerating megakernel: one invocation per pixel traces path after path; a path that ends is followed by
+ * the pixel's next sample at once, so that lanes stay busy. A dispatch takes a bounded number of loop turns
+ * (`budget`), then keeps every lane's state in uState and goes on in the next dispatch. Where it pauses does
+ * not change the result: state is exact, and samples are merged into the film in batches whose ends depend on
+ * `sampleEnd` alone.
+ */
+#define FILM_BINDING 1
+#include "passes/pathtrace/camera.glsl"
+#include "passes/pathtrace/path.glsl"
+#include "shaders/film/film.glsl"
+#include "shaders/film/filter.glsl"
+#include "shaders/intersection/scene_hit.glsl"
+
+layout(local_size_x = 64) in;
+
+/** See TraceParameters in passes/pathtrace/path_tracer.cpp. */
+layout(push_constant) uniform Parameters {
+    CameraFrame camera;
+    vec4 environment;   ///< radiance of rays that leave the scene
+    uvec2 size;         ///< pixels
+    uint sampleEnd;     ///< samples per pixel to reach
+    uint seed;
+    uint maxDepth;
+    uint countCut;      ///< 1: paths cut at maxDepth are counted
+    uint budget;        ///< loop turns of the whole group to start with
+    uint begin;         ///< 1: the first dispatch, uState holds nothing yet
+} parameters;
+
+/** A pixel's state between dispatches: 4 x 2 texels. */
+layout(set = 0, binding = 0, rgba32f) uniform image2D uState;
+
+/** Counters of all dispatches; 64 bits as two words, lower first. */
+layout(set = 0, binding = 2, std430) buffer uCounters {
+    uint open;        ///< pixels that have not reached sampleEnd, of this dispatch
+    uint unused;
+    uint camera[2];
+    uint bounce[2];
+    uint shadow[2];
+    uint cut[2];
+    uint abandoned[2];  ///< rays given up in the tree
+} counters;
+
+#define COUNT(member, value)                                                     \
+    {                                                                            \
+        const uint total = subgroupAdd(value);                                   \
+        if (subgroupElect() && total > 0u) {                                     \
+            const uint before = atomicAdd(counters.member[0], total);            \
+            if (before + total < before) atomicAdd(counters.member[1], 1u);      \
+        }                                                                        \
+    }
+
+layout(constant_id = 4) const uint FILTER_KIND = FILTER_BOX;
+layout(constant_id = 3) const bool COUNT_TURNS = true;  ///< the loop's body has loops of its own
+
+Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
+    Path path;
+    const vec2 place = vec2(pixel) + 0.5 + filterOffset(FILTER_KIND, sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER));
+    cameraRay(parameters.camera, place, parameters.size, path.origin, path.direction);
+    path.throughput = vec3(1.0);
+    path.radiance = vec3(0.0);
+    path.density = -1.0;
+    path.depth = 0u;
+    path.sampleIndex = sampleIndex;
+    path.source = -1;
+    return path;
+}
+
+void main() {
+    const uvec2 pixel = tilePixel(parameters.size);
+    const bool inside = all(lessThan(pixel, parameters.size));
+    const uint pixelIndex = pixel.y * parameters.size.x + pixel.x;
+    const ivec2 place = ivec2(pixel) * ivec2(4, 2);
+    const ivec2 filmPixel = ivec2(pixel);
+
+    // Bits are kept as float texels: indices are stored as exact floats where they are small (depth,
+    // source), the sample index in two halves.
+    const bool begin = parameters.begin != 0u;
+    const vec4 s0 = begin ? vec4(0.0) : imageLoad(uState, place), s1 = imageLoad(uState, place + ivec2(1, 0));
+    const vec4 s2 = imageLoad(uState, place + ivec2(2, 0)), s3 = imageLoad(uState, place + ivec2(3, 0));
+    const vec4 s4 = imageLoad(uState, place + ivec2(0, 1)), s5 = imageLoad(uState, place + ivec2(1, 1));
+    const vec4 s6 = imageLoad(uState, place + ivec2(2, 1)), s7 = begin ? vec4(0.0) : imageLoad(uState, place + ivec2(3, 1));
+    FilmPixel stored = loadFilm(filmPixel);
+    FilmBatch batch = startFilmBatch(stored);
+    uint sampleIndex = uint(s0.w);
+    PixelSampler numbers = startSample(SAMPLER_KIND, pixelIndex, sampleIndex, parameters.seed);
+    const bool resumed = s7.w > 0.0;
+    Path path = startPath(numbers, pixel, sampleIndex);
+    if (resumed) {
+        path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w));
+    }
+    if (s7.w > 1.5) {
+        batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w, s5.w, s6.w, true);
+    }
+
+    uint cameraRays = 0u, bounceRays = 0u, shadowRays = 0u, cutPaths = 0u, abandonedRays = 0u;
+    cameraRays += inside && !resumed && sampleIndex < parameters.sampleEnd ? 1u : 0u;
+    uint spent = 0u;
+    while (inside && path.sampleIndex < parameters.sampleEnd && spent < parameters.budget) {
+        float distance;
+        int slot;
+        const int closestTurns = closestHit(path.origin, path.direction, path.source, distance, slot);
+        bool cut;
+        ShadowRay shadow;
+        bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, parameters.environment.xyz, shadow, cut);
+        bool blocked;
+        const int shadowTurns = occluded(shadow.origin, shadow.direction, path.source, shadow.limit, blocked);
+        path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance : vec3(0.0);
+
+        shadowRays += shadow.limit > 0.0 ? 1u : 0u;
+        bounceRays += alive ? 1u : 0u;
+        cutPaths += cut ? parameters.countCut : 0u;
+        if (!alive) {
+            addFilmSample(batch, path.sampleIndex, path.radiance);
+            const uint next = path.sampleIndex + 1u;
+            numbers = startSample(SAMPLER_KIND, pixelIndex, next, parameters.seed);
+            path = startPath(numbers, pixel, next);
+            cameraRays += next < parameters.sampleEnd ? 1u : 0u;
+        }
+        spent += 1u;
+        if (COUNT_TURNS) {
+            abandonedRays += (closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u) + (shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u);
+            spent += uint(subgroupMax(closestTurns) + subgroupMax(shadowTurns));
+        }
+    }
+
+    const bool finished = path.sampleIndex >= parameters.sampleEnd;
+    if (inside) {
+        if (finished) {
+            storeFilm(filmPixel, mergeFilmBatch(stored, batch));
+            imageStore(uState, place, vec4(0.0, 0.0, 0.0, float(path.sampleIndex)));
+            imageStore(uState, place + ivec2(3, 1), vec4(0.0));
+        } else {
+            imageStore(uState, place, vec4(path.origin, float(path.sampleIndex)));
+            imageStore(uState, place + ivec2(1, 0), vec4(path.direction, path.density));
+            imageStore(uState, place + ivec2(2, 0), vec4(path.throughput, float(path.depth)));
+            imageStore(uState, place + ivec2(3, 0), vec4(path.radiance, float(path.source)));
+            imageStore(uState, place + ivec2(0, 1), vec4(batch.sumA, batch.countA));
+            imageStore(uState, place + ivec2(1, 1), vec4(batch.sumB, batch.countB));
+            imageStore(uState, place + ivec2(2, 1), vec4(batch.squares, batch.rejected));
+            imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, batch.shifted ? 2.0 : 1.0));
+        }
+    }
+    const uint unfinished = subgroupAdd(inside && !finished ? 1u : 0u);
+    if (subgroupElect() && unfinished > 0u) atomicAdd(counters.open, unfinished);
+    COUNT(camera, cameraRays)
+    COUNT(bounce, bounceRays)
+    COUNT(shadow, shadowRays)
+    COUNT(cut, cutPaths)
+    COUNT(abandoned, abandonedRays)
+}
