@@ -218,7 +218,7 @@ DescriptorSet::DescriptorSet(Device::Impl& gpu, const ComputePipeline& pipeline,
                 .buffer = write.buffer, .offset = write.offset, .range = write.range};
             images[i] = vk::DescriptorImageInfo{.sampler = write.sampler,
                                                 .imageView = write.imageView,
-                                                .imageLayout = vk::ImageLayout::eGeneral};
+                                                .imageLayout = write.imageLayout};
             views[i] = write.texelView;
             updates.push_back({.dstSet = set_,
                                .dstBinding = write.binding,

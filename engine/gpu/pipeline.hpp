@@ -90,7 +90,8 @@ struct DescriptorWrite {
     std::uint64_t offset = 0;  ///< a multiple of the device's min...OffsetAlignment
     std::uint64_t range = VK_WHOLE_SIZE;
     vk::BufferView texelView = {};  ///< texel buffers
-    vk::ImageView imageView = {};   ///< images, in layout GENERAL
+    vk::ImageView imageView = {};   ///< images
+    vk::ImageLayout imageLayout = vk::ImageLayout::eGeneral;
     vk::Sampler sampler = {};
 };
 

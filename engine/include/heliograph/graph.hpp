@@ -47,10 +47,13 @@ struct Window {
     std::uint64_t bytes = 0;
 };
 
-/** One declared access: the shader's name for the binding (of a block, its block name or instance name), and
- * the resource. For a texel buffer, the view's format; Undefined takes RGBA32F or RGBA32UI after the shader's
- * sampler type, or the format qualifier of an imageBuffer. A window binds a part of a buffer, for data larger
- * than DeviceInfo::maxStorageBufferRange. */
+/** How a sampler2D binding filters; coordinates clamp to the edge. */
+enum class Sampling : std::uint8_t { Nearest, Linear };
+
+/** One declared access: the shader's name for the binding (of a block its instance name, or its block name
+ * where it has none), and the resource. For a texel buffer, the view's format; Undefined takes RGBA32F or
+ * RGBA32UI after the shader's sampler type, or the format qualifier of an imageBuffer. A window binds a part
+ * of a buffer, for data larger than DeviceInfo::maxStorageBufferRange. */
 struct Binding {
     Binding(std::string bindingName, Buffer buffer, Format viewFormat = Format::Undefined)
         : name(std::move(bindingName)), resource(buffer.id), graph(buffer.graph), view(viewFormat) {}
@@ -60,19 +63,22 @@ struct Binding {
           graph(buffer.graph),
           view(viewFormat),
           window(part) {}
-    Binding(std::string bindingName, Image image)
-        : name(std::move(bindingName)), resource(image.id), graph(image.graph) {}
+    Binding(std::string bindingName, Image image, Sampling filter = Sampling::Nearest)
+        : name(std::move(bindingName)), resource(image.id), graph(image.graph), sampling(filter) {}
     std::string name;
     std::uint32_t resource;
     std::uint32_t graph;
     Format view = Format::Undefined;
     Window window = {};
+    Sampling sampling = Sampling::Nearest;
 };
 
 /** What a pass records with while a plan executes. */
 class Commands {
 public:
-    /** Push constants of the pass's kernel; T's size must equal the kernel's block (checked). */
+    /** Push constants of the pass's kernel; T's size must equal the kernel's block. They hold until pushed
+     * anew. What does not fit the kernel or the device throws a GraphError that names the pass, here and in
+     * every function below. */
     template <typename T>
     Commands& push(const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -98,37 +104,6 @@ private:
 
 struct ComputeOptions {
     SpecConstants spec = {};
-};
-
-class Graph;
-
-/** Fluent declaration of one pass. Valid until the graph is compiled or destroyed. */
-class Pass {
-public:
-    Pass& reads(std::initializer_list<Binding> bindings);
-    Pass& reads(const std::vector<Binding>& bindings);
-    /** Written in whole or in part without reading what was there; parts not written hold the version
-     * before, so its writers stay alive, and a first write to a transient must be whole (checked in the
-     * NaN-poison mode). */
-    Pass& writes(std::initializer_list<Binding> bindings);
-    Pass& writes(const std::vector<Binding>& bindings);
-    /** Every byte is written and none read: the version before is not needed, its writers may be culled. */
-    Pass& overwrites(std::initializer_list<Binding> bindings);
-    Pass& overwrites(const std::vector<Binding>& bindings);
-    /** Read and written: atomics, accumulation in place. */
-    Pass& modifies(std::initializer_list<Binding> bindings);
-    Pass& modifies(const std::vector<Binding>& bindings);
-    /** A buffer that dispatchIndirect reads. */
-    Pass& indirect(Buffer arguments);
-    /** The pass has an effect the graph cannot see; never culled. */
-    Pass& keep();
-    Pass& record(std::function<void(Commands&)> recorder);
-
-private:
-    friend class Graph;
-    Pass(Graph* graph, std::uint32_t index) : graph_(graph), index_(index) {}
-    Graph* graph_;
-    std::uint32_t index_;
 };
 
 /** One finished or running execution of a plan. Copyable token. */
@@ -172,7 +147,9 @@ public:
     Execution execute();
     /** Blocks until the execution is done. */
     void wait(const Execution& execution) const;
-    /** Per-pass device times of an execution; waits for it. Times of one of the last 8 executions. */
+    /** Device times of an execution's passes and readbacks, in order, barriers included; waits for it. They
+     * add up to the execution's whole time. One of the last 8 executions; empty on a device without
+     * timestamps. */
     std::vector<PassTiming> timings(const Execution& execution) const;
 
     AliasingStatistics aliasing() const;
@@ -186,9 +163,9 @@ public:
 
     struct Impl;
     Impl* impl() const { return impl_.get(); }
+    explicit Plan(std::unique_ptr<Impl> impl);
 
 private:
-    friend class Graph;
     std::unique_ptr<Impl> impl_;
 };
 
@@ -196,8 +173,8 @@ private:
 class ReadbackBytes {
 public:
     ReadbackBytes();
-    /** Waits for the execution and returns the bytes it left. Throws GraphError where the plan was destroyed,
-     * the token is another plan's, or CompileOptions::executionsInFlight later executions overwrote them. */
+    /** Waits for the execution and returns the bytes it left. Throws GraphError where the plan was destroyed
+     * or is another graph's, or CompileOptions::executionsInFlight later executions overwrote them. */
     std::vector<std::byte> wait(const Execution& execution) const;
 
     struct Impl;
@@ -223,6 +200,8 @@ public:
 private:
     ReadbackBytes bytes_;
 };
+
+class Pass;
 
 /** A graph under declaration. */
 class Graph {
@@ -257,7 +236,7 @@ public:
     }
 
     /** Validates, culls, aliases, derives barriers, builds pipelines. Throws GraphError with every problem.
-     * A readback belongs to the last plan compiled from its graph. */
+     * May be called again; readbacks serve every plan compiled from the graph, by the execution's token. */
     Plan compile(const CompileOptions& options = {});
 
     struct Impl;
@@ -266,6 +245,35 @@ public:
 private:
     ReadbackBytes readbackBytes(std::uint32_t resource, std::uint32_t graph);
     std::unique_ptr<Impl> impl_;
+};
+
+/** Fluent declaration of one pass. Valid until the graph is compiled or destroyed. */
+class Pass {
+public:
+    Pass& reads(std::initializer_list<Binding> bindings);
+    Pass& reads(const std::vector<Binding>& bindings);
+    /** Written in whole or in part without reading what was there; parts not written hold the version
+     * before, so its writers stay alive, and a first write to a transient must be whole (checked in the
+     * NaN-poison mode). */
+    Pass& writes(std::initializer_list<Binding> bindings);
+    Pass& writes(const std::vector<Binding>& bindings);
+    /** Every byte is written and none read: the version before is not needed, its writers may be culled. */
+    Pass& overwrites(std::initializer_list<Binding> bindings);
+    Pass& overwrites(const std::vector<Binding>& bindings);
+    /** Read and written: atomics, accumulation in place. */
+    Pass& modifies(std::initializer_list<Binding> bindings);
+    Pass& modifies(const std::vector<Binding>& bindings);
+    /** A buffer that dispatchIndirect reads. */
+    Pass& indirect(Buffer arguments);
+    /** The pass has an effect the graph cannot see; never culled. */
+    Pass& keep();
+    Pass& record(std::function<void(Commands&)> recorder);
+
+private:
+    friend class Graph;
+    Pass(Graph::Impl* graph, std::uint32_t index) : graph_(graph), index_(index) {}
+    Graph::Impl* graph_;
+    std::uint32_t index_;
 };
 
 }  // namespace helio
