@@ -1,0 +1,525 @@
+/** @file Plans on the device: values, aliasing, culling, repetition, imports, indirect work, readbacks,
+ * times. */
+#include "tests/graph/kernels.hpp"
+#include "tests/support/device.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/graph.hpp>
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+namespace helio {
+namespace {
+
+using test::countKernel;
+using test::device;
+using test::iotaKernel;
+using test::joinKernel;
+using test::kernelOf;
+using test::stepKernel;
+
+constexpr std::uint32_t count = 1000;
+constexpr std::uint64_t size = count * sizeof(std::uint32_t);
+using Values = std::vector<std::uint32_t>;
+
+Values iota(std::uint32_t start) {
+    Values values(count);
+    std::iota(values.begin(), values.end(), start);
+    return values;
+}
+Values step(Values values) {
+    for (std::uint32_t& value : values) value = value * 3 + 1;
+    return values;
+}
+Values join(const Values& left, const Values& right) {
+    Values values(left.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = left[i] * 5 + right[i];
+    return values;
+}
+
+void addIota(Graph& g, Buffer out, std::uint32_t start) {
+    g.compute("iota", iotaKernel()).overwrites({{"uOut", out}}).record([start](Commands& c) {
+        c.push(start).dispatchInvocations(count);
+    });
+}
+void addStep(Graph& g, const std::string& name, Buffer in, Buffer out) {
+    g.compute(name, stepKernel()).reads({{"uIn", in}}).overwrites({{"uOut", out}}).record([](Commands& c) {
+        c.dispatchInvocations(count);
+    });
+}
+void addJoin(Graph& g, const std::string& name, Buffer left, Buffer right, Buffer sum) {
+    g.compute(name, joinKernel())
+        .reads({{"uLeft", left}, {"uRight", right}})
+        .overwrites({{"uSum", sum}})
+        .record([](Commands& c) { c.dispatchInvocations(count); });
+}
+void addCount(Graph& g, const std::string& name, Buffer counter) {
+    g.compute(name, countKernel()).modifies({{"uCount", counter}}).record([](Commands& c) { c.dispatch(1); });
+}
+
+TEST(Execute, Chain) {
+    Graph g(device());
+    Buffer buffer = g.buffer("start", {size});
+    addIota(g, buffer, 7);
+    Values expected = iota(7);
+    for (int i = 0; i < 10; ++i) {
+        const Buffer next = g.buffer("link", {size});
+        addStep(g, "step", buffer, next);
+        expected = step(expected);
+        buffer = next;
+    }
+    auto result = g.readback<std::uint32_t>(buffer);
+    Plan plan = g.compile();
+    EXPECT_EQ(result.wait(plan.execute()), expected);
+    EXPECT_LE(plan.aliasing().allocatedBytes * 4, plan.aliasing().transientBytes);
+}
+
+/** Diamonds one after another, with and without aliasing and poison: the same bits. */
+TEST(Execute, DiamondsAreTheSameAliasedApartAndPoisoned) {
+    Graph g(device());
+    Buffer top = g.buffer("top", {size});
+    addIota(g, top, 1);
+    Values expected = iota(1);
+    for (int i = 0; i < 5; ++i) {
+        const Buffer left = g.buffer("left", {size}), right = g.buffer("right", {size}),
+                     far = g.buffer("far", {size}), bottom = g.buffer("bottom", {size});
+        addStep(g, "left", top, left);
+        addStep(g, "right", top, right);
+        addStep(g, "far", right, far);
+        addJoin(g, "join", left, far, bottom);
+        expected = join(step(expected), step(step(expected)));
+        top = bottom;
+    }
+    auto result = g.readback<std::uint32_t>(top);
+    Plan aliased = g.compile(), apart = g.compile({.alias = false}), poisoned = g.compile({.poison = true});
+    EXPECT_LT(aliased.aliasing().allocatedBytes, apart.aliasing().allocatedBytes);
+    EXPECT_EQ(result.wait(aliased.execute()), expected);
+    EXPECT_EQ(result.wait(apart.execute()), expected);
+    EXPECT_EQ(result.wait(poisoned.execute()), expected);
+    EXPECT_EQ(result.wait(poisoned.execute()), expected);
+}
+
+TEST(Execute, PoisonShowsWhatWasNeverWritten) {
+    const Kernel half = kernelOf(
+        "test/half", "layout(std430, set = 0, binding = 0) writeonly buffer Out { float values[]; } uOut;",
+        "uint i = gl_GlobalInvocationID.x; if (i < uOut.values.length() / 2) uOut.values[i] = 1.0;");
+    const Kernel image =
+        kernelOf("test/left", "layout(rgba32f, set = 0, binding = 0) uniform writeonly image2D uOut;",
+                 "ivec2 p = ivec2(gl_GlobalInvocationID.xy); if (p.x < 4) imageStore(uOut, p, vec4(1));",
+                 "local_size_x = 8, local_size_y = 8");
+    Graph g(device());
+    const Buffer buffer = g.buffer("half", {size});
+    const Image picture = g.image("left", {{8, 8}, Format::RGBA32F});
+    g.compute("half", half).writes({{"uOut", buffer}}).record([](Commands& c) {
+        c.dispatchInvocations(count);
+    });
+    g.compute("left", image).writes({{"uOut", picture}}).record([=](Commands& c) {
+        c.dispatchOver(picture);
+    });
+    auto values = g.readback<float>(buffer);
+    auto texels = g.readback<float>(picture);
+    Plan plan = g.compile({.poison = true});
+    const Execution run = plan.execute();
+    const std::vector<float> read = values.wait(run);
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        if (i < count / 2)
+            EXPECT_EQ(read[i], 1.0f) << i;
+        else
+            EXPECT_EQ(std::bit_cast<std::uint32_t>(read[i]), 0x7fc0deadu) << i;
+    }
+    const std::vector<float> pixels = texels.wait(run);
+    ASSERT_EQ(pixels.size(), 8u * 8 * 4);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        if (i / 4 % 8 < 4)
+            EXPECT_EQ(pixels[i], 1.0f) << i;
+        else
+            EXPECT_TRUE(std::isnan(pixels[i])) << i;
+    }
+}
+
+TEST(Execute, CulledPassesNeverRun) {
+    int recorded = 0;
+    Graph g(device());
+    const Buffer used = g.buffer("used", {size}), unused = g.buffer("unused", {size});
+    addIota(g, used, 0);
+    g.compute("wasted", stepKernel())
+        .reads({{"uIn", used}})
+        .writes({{"uOut", unused}})
+        .record([&](Commands& c) {
+            ++recorded;
+            c.dispatchInvocations(count);
+        });
+    auto result = g.readback<std::uint32_t>(used);
+    Plan plan = g.compile();
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(result.wait(plan.execute()), iota(0));
+    EXPECT_EQ(recorded, 0);
+    EXPECT_EQ(plan.culled(), std::vector<std::string>{"wasted"});
+    EXPECT_EQ(plan.passes(), std::vector<std::string>{"iota"});
+}
+
+TEST(Execute, KeptPassRunsEachTime) {
+    DeviceBuffer counter = makeBuffer(device(), "counter", Values{0});
+    Graph g(device());
+    addCount(g, "count", g.import(counter));
+    Plan plan = g.compile();
+    Execution last;
+    for (int i = 0; i < 100; ++i) last = plan.execute();
+    plan.wait(last);
+    std::uint32_t value = 0;
+    counter.download(&value, 4);
+    EXPECT_EQ(value, 100u);
+}
+
+/** Recorders run at each execution, so push constants may change. */
+TEST(Execute, RunsAHundredTimesWithFreshPushConstants) {
+    std::uint32_t start = 0;
+    Graph g(device());
+    const Buffer a = g.buffer("a", {size}), b = g.buffer("b", {size});
+    g.compute("iota", iotaKernel()).writes({{"uOut", a}}).record([&](Commands& c) {
+        c.push(start).dispatchInvocations(count);
+    });
+    addStep(g, "step", a, b);
+    auto result = g.readback<std::uint32_t>(b);
+    Plan plan = g.compile();
+    for (start = 0; start < 100; ++start) ASSERT_EQ(result.wait(plan.execute()), step(iota(start))) << start;
+}
+
+TEST(Execute, SeveralInFlightKeepTheirReadbacks) {
+    std::uint32_t start = 0;
+    Graph g(device());
+    const Buffer a = g.buffer("a", {size});
+    g.compute("iota", iotaKernel()).writes({{"uOut", a}}).record([&](Commands& c) {
+        c.push(start).dispatchInvocations(count);
+    });
+    auto result = g.readback<std::uint32_t>(a);
+    Plan plan = g.compile({.executionsInFlight = 3});
+    std::vector<Execution> runs;
+    for (start = 0; start < 5; ++start) runs.push_back(plan.execute());
+    EXPECT_THROW(result.wait(runs[0]), GraphError);
+    EXPECT_THROW(result.wait(runs[1]), GraphError);
+    for (std::uint32_t i = 2; i < 5; ++i) EXPECT_EQ(result.wait(runs[i]), iota(i));
+    EXPECT_EQ(plan.timings(runs[0]).size(), 2u) << "times outlive readbacks";
+}
+
+TEST(Execute, TwoPlansShareAnImportedBuffer) {
+    DeviceBuffer shared = makeBuffer(device(), "shared", iota(0));
+    Graph one(device()), two(device());
+    const Buffer a = one.import(shared), b = two.import(shared);
+    const Buffer t = one.buffer("t", {size});
+    addStep(one, "step", a, t);
+    one.copy("copy", t, a);
+    const Kernel negate =
+        kernelOf("test/negate", "layout(std430, set = 0, binding = 0) buffer Data { uint values[]; } uData;",
+                 "uint i = gl_GlobalInvocationID.x; if (i < uData.values.length()) uData.values[i] = "
+                 "~uData.values[i];");
+    two.compute("negate", negate).modifies({{"uData", b}}).record([](Commands& c) {
+        c.dispatchInvocations(count);
+    });
+    auto last = two.readback<std::uint32_t>(b);
+    Plan first = one.compile(), second = two.compile();
+    Values expected = iota(0);
+    for (int i = 0; i < 20; ++i) {
+        first.execute();
+        const Execution run = second.execute();
+        expected = step(expected);
+        for (std::uint32_t& value : expected) value = ~value;
+        ASSERT_EQ(last.wait(run), expected) << i;
+    }
+    Values read(count);
+    shared.download(read.data(), size);
+    EXPECT_EQ(read, expected);
+}
+
+TEST(Execute, UploadBetweenExecutionsIsSeen) {
+    DeviceBuffer source = makeBuffer(device(), "source", iota(0));
+    Graph g(device());
+    const Buffer in = g.import(source), out = g.buffer("out", {size});
+    addStep(g, "step", in, out);
+    auto result = g.readback<std::uint32_t>(out);
+    Plan plan = g.compile({.executionsInFlight = 4});
+    std::vector<Execution> runs;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        source.upload(iota(i * 10).data(), size);
+        runs.push_back(plan.execute());
+    }
+    for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(result.wait(runs[i]), step(iota(i * 10)));
+}
+
+TEST(Execute, IndirectDispatch) {
+    const Kernel arguments = kernelOf(
+        "test/arguments",
+        "layout(std430, set = 0, binding = 0) writeonly buffer Groups { uint words[]; } uGroups;",
+        "uGroups.words[0] = 7u; uGroups.words[1] = 3u; uGroups.words[2] = 2u; uGroups.words[3] = 1u;",
+        "local_size_x = 1");
+    const Kernel mark =
+        kernelOf("test/mark", "layout(std430, set = 0, binding = 0) buffer Total { uint value; } uTotal;",
+                 "atomicAdd(uTotal.value, 1u);", "local_size_x = 8");
+    Graph g(device());
+    const Buffer groups = g.buffer("groups", {16}), total = g.buffer("total", {4});
+    g.compute("arguments", arguments).overwrites({{"uGroups", groups}}).record([](Commands& c) {
+        c.dispatch(1);
+    });
+    g.fill("zero", total, 0);
+    g.compute("mark", mark).modifies({{"uTotal", total}}).indirect(groups).record([=](Commands& c) {
+        c.dispatchIndirect(groups, 4);
+    });
+    auto result = g.readback<std::uint32_t>(total);
+    Plan plan = g.compile();
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(result.wait(plan.execute()), Values{3 * 2 * 1 * 8});
+}
+
+TEST(Execute, FillAndCopy) {
+    Graph g(device());
+    const Buffer small = g.buffer("small", {10}), large = g.buffer("large", {24});
+    g.fill("fill large", large, 0xaaaaaaaau);
+    g.fill("fill small", small, 0x04030201u);
+    g.copy("copy", small, large);
+    auto result = g.readback<std::uint8_t>(large);
+    Plan plan = g.compile();
+    const std::vector<std::uint8_t> expected{1,    2,    3,    4,    1,    2,    3,    4,
+                                             1,    2,    0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa,
+                                             0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa, 0xaa};
+    EXPECT_EQ(result.wait(plan.execute()), expected);
+}
+
+TEST(Execute, ImagesOfManyFormatsAndSampling) {
+    const auto paint = [](const std::string& format, const std::string& prefix) {
+        return kernelOf(
+            "test/paint_" + format,
+            "layout(" + format + ", set = 0, binding = 0) uniform writeonly " + prefix + "image2D uOut;",
+            "ivec2 p = ivec2(gl_GlobalInvocationID.xy); if (all(lessThan(p, imageSize(uOut)))) "
+            "imageStore(uOut, p, " +
+                prefix + "vec4(p.x, p.y, 3, 1));",
+            "local_size_x = 8, local_size_y = 8");
+    };
+    const Kernel sample = kernelOf(
+        "test/sample",
+        "layout(set = 0, binding = 0) uniform sampler2D uIn;\n"
+        "layout(rgba32f, set = 0, binding = 1) uniform writeonly image2D uOut;",
+        "ivec2 p = ivec2(gl_GlobalInvocationID.xy); ivec2 s = imageSize(uOut); if (all(lessThan(p, s))) "
+        "imageStore(uOut, p, textureLod(uIn, vec2(p) / vec2(s), 0.0));",
+        "local_size_x = 8, local_size_y = 8");
+    Graph g(device());
+    const Image wide = g.image("wide", {{13, 9}, Format::RGBA32F}),
+                bits = g.image("bits", {{13, 9}, Format::R32UI}),
+                half = g.image("half", {{13, 9}, Format::RGBA16F}),
+                linear = g.image("linear", {{13, 9}, Format::RGBA32F});
+    const auto over = [](Image image) { return [=](Commands& c) { c.dispatchOver(image); }; };
+    g.compute("wide", paint("rgba32f", "")).overwrites({{"uOut", wide}}).record(over(wide));
+    g.compute("bits", paint("r32ui", "u")).overwrites({{"uOut", bits}}).record(over(bits));
+    g.compute("half", paint("rgba16f", "")).overwrites({{"uOut", half}}).record(over(half));
+    g.compute("linear", sample)
+        .reads({{"uIn", wide, Sampling::Linear}})
+        .overwrites({{"uOut", linear}})
+        .record(over(linear));
+    auto wideBack = g.readback<float>(wide);
+    auto bitsBack = g.readback<std::uint32_t>(bits);
+    auto halfBack = g.readback<std::uint16_t>(half);
+    auto linearBack = g.readback<float>(linear);
+    Plan plan = g.compile();
+    for (int repeat = 0; repeat < 2; ++repeat) {
+        const Execution run = plan.execute();
+        const auto w = wideBack.wait(run);
+        const auto b = bitsBack.wait(run);
+        const auto h = halfBack.wait(run);
+        const auto l = linearBack.wait(run);
+        ASSERT_EQ(w.size(), 13u * 9 * 4);
+        ASSERT_EQ(b.size(), 13u * 9);
+        for (std::size_t y = 0; y < 9; ++y) {
+            for (std::size_t x = 0; x < 13; ++x) {
+                const std::size_t i = y * 13 + x;
+                EXPECT_EQ(w[i * 4], float(x));
+                EXPECT_EQ(w[i * 4 + 1], float(y));
+                EXPECT_EQ(b[i], x);
+                EXPECT_EQ(h[i * 4 + 2], 0x4200u);  // 3 in half precision
+                // Sampled half a texel up and left of the centre: clamped at the edge, else the mean.
+                EXPECT_NEAR(l[i * 4], x == 0 ? 0.0 : double(x) - 0.5, 0.03);
+            }
+        }
+    }
+}
+
+TEST(Execute, TexelAndUniformBuffersAndWindows) {
+    const Kernel gather =
+        kernelOf("test/gather",
+                 "layout(set = 0, binding = 0) uniform samplerBuffer uFloats;\n"
+                 "layout(set = 0, binding = 1) uniform usamplerBuffer uWords;\n"
+                 "layout(std140, set = 0, binding = 2) uniform Scale { vec4 scale; } uScale;\n"
+                 "layout(r32f, set = 0, binding = 3) uniform writeonly imageBuffer uOut;\n"
+                 "layout(std430, set = 0, binding = 4) readonly buffer Part { float values[]; } uPart;",
+                 "int i = int(gl_GlobalInvocationID.x); if (i < imageSize(uOut)) imageStore(uOut, i, "
+                 "vec4(texelFetch(uFloats, i).y * uScale.scale.x + float(texelFetch(uWords, i).x) + "
+                 "uPart.values[i]));");
+    constexpr std::uint32_t n = 256;
+    std::vector<float> floats(n * 4), part(n * 2);
+    Values words(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        floats[i * 4 + 1] = float(i);
+        words[i] = 1000 * i;
+        part[n + i] = 0.25f;
+    }
+    DeviceBuffer f = makeBuffer(device(), "floats", floats), w = makeBuffer(device(), "words", words),
+                 s = makeBuffer(device(), "scale", std::vector<float>{2, 0, 0, 0}),
+                 p = makeBuffer(device(), "part", part);
+    Graph g(device());
+    const Buffer out = g.buffer("out", {n * 4});
+    g.compute("gather", gather)
+        .reads({{"uFloats", g.import(f)}, {"uWords", g.import(w), Format::R32UI}, {"uScale", g.import(s)}})
+        .reads({{"uPart", g.import(p), Window{n * 4, n * 4}}})
+        .overwrites({{"uOut", out}})
+        .record([](Commands& c) { c.dispatchInvocations(n); });
+    auto result = g.readback<float>(out);
+    Plan plan = g.compile();
+    const std::vector<float> read = result.wait(plan.execute());
+    ASSERT_EQ(read.size(), n);
+    for (std::uint32_t i = 0; i < n; ++i)
+        EXPECT_EQ(read[i], 2.0f * float(i) + 1000.0f * float(i) + 0.25f) << i;
+}
+
+TEST(Execute, ImportedImageKeepsItsTexels) {
+    const Kernel add =
+        kernelOf("test/add_image", "layout(r32ui, set = 0, binding = 0) uniform uimage2D uImage;",
+                 "ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(uImage, p, imageLoad(uImage, p) + "
+                 "uvec4(p.x + 8 * p.y));",
+                 "local_size_x = 8, local_size_y = 8");
+    const Kernel zero =
+        kernelOf("test/zero_image", "layout(r32ui, set = 0, binding = 0) uniform writeonly uimage2D uImage;",
+                 "imageStore(uImage, ivec2(gl_GlobalInvocationID.xy), uvec4(0));",
+                 "local_size_x = 8, local_size_y = 8");
+    DeviceImage image(device(), "accumulated", 8, 8, Format::R32UI);
+    Graph start(device());
+    const Image a = start.import(image);
+    start.compute("zero", zero).overwrites({{"uImage", a}}).record([=](Commands& c) { c.dispatchOver(a); });
+    Plan starting = start.compile();
+    Graph g(device());
+    const Image b = g.import(image);
+    g.compute("add", add).modifies({{"uImage", b}}).record([=](Commands& c) { c.dispatchOver(b); });
+    auto result = g.readback<std::uint32_t>(b);
+    Plan plan = g.compile();
+    starting.execute();
+    Execution run;
+    for (int i = 0; i < 5; ++i) run = plan.execute();
+    const Values read = result.wait(run);
+    for (std::uint32_t i = 0; i < 64; ++i) EXPECT_EQ(read[i], 5 * i);
+}
+
+TEST(Execute, SpecializationConstantsByNameAndLocalSize) {
+    const Kernel kernel =
+        kernelOf("test/spec",
+                 "layout(constant_id = 3) const uint FACTOR = 2u;\n"
+                 "layout(constant_id = 5) const bool NEGATE = false;\n"
+                 "layout(constant_id = 6) const float OFFSET = 0.5;\n"
+                 "layout(local_size_x_id = 9) in;\nlayout(constant_id = 9) const uint WIDTH = 64u;\n"
+                 "layout(std430, set = 0, binding = 0) writeonly buffer Out { float values[]; } uOut;",
+                 "uint i = gl_GlobalInvocationID.x; if (i < uOut.values.length()) uOut.values[i] = "
+                 "(NEGATE ? -1.0 : 1.0) * float(i * FACTOR) + OFFSET + float(gl_WorkGroupSize.x) * 1000.0;");
+    Graph g(device());
+    const Buffer a = g.buffer("a", {400}), b = g.buffer("b", {400});
+    g.compute("defaults", kernel).overwrites({{"uOut", a}}).record([](Commands& c) {
+        c.dispatchInvocations(100);
+    });
+    g.compute("given", kernel,
+              {.spec = {{"FACTOR", 7u}, {"NEGATE", true}, {"OFFSET", 0.25f}, {"WIDTH", 16u}}})
+        .overwrites({{"uOut", b}})
+        .record([](Commands& c) { c.dispatchInvocations(100); });
+    auto first = g.readback<float>(a), second = g.readback<float>(b);
+    Plan plan = g.compile();
+    const Execution run = plan.execute();
+    const std::vector<float> x = first.wait(run), y = second.wait(run);
+    for (std::uint32_t i = 0; i < 100; ++i) {
+        EXPECT_EQ(x[i], float(2 * i) + 0.5f + 64000.0f);
+        EXPECT_EQ(y[i], -float(7 * i) + 0.25f + 16000.0f);
+    }
+}
+
+TEST(Execute, TimesAddUpToTheWhole) {
+    const Kernel work = kernelOf(
+        "test/work", "layout(std430, set = 0, binding = 0) buffer Data { uint values[]; } uData;",
+        "uint i = gl_GlobalInvocationID.x; if (i < uData.values.length()) { uint x = uData.values[i]; "
+        "for (int k = 0; k < 2000; ++k) x = x * 1664525u + 1013904223u; uData.values[i] = x; }");
+    constexpr std::uint32_t n = 1 << 16;
+    Graph g(device());
+    const Buffer a = g.buffer("a", {n * 4});
+    g.fill("zero", a, 0);
+    for (int i = 0; i < 3; ++i)
+        g.compute("work " + std::to_string(i), work).modifies({{"uData", a}}).record([](Commands& c) {
+            c.dispatchInvocations(n);
+        });
+    auto result = g.readback<std::uint32_t>(a);
+    Plan plan = g.compile();
+    plan.wait(plan.execute());  // compiles the kernels
+    const auto start = std::chrono::steady_clock::now();
+    const Execution run = plan.execute();
+    plan.wait(run);
+    const double wall =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const std::vector<PassTiming> times = plan.timings(run);
+    ASSERT_EQ(times.size(), 5u);
+    EXPECT_EQ(times[0].name, "zero");
+    EXPECT_EQ(times[1].name, "work 0");
+    EXPECT_EQ(times[4].name, "readback a");
+    double sum = 0;
+    for (const PassTiming& time : times) {
+        EXPECT_GE(time.milliseconds, 0.0);
+        sum += time.milliseconds;
+    }
+    EXPECT_GT(times[1].milliseconds, times[0].milliseconds);
+    EXPECT_GT(sum, 0.0);
+    EXPECT_LE(sum, wall * 1.01) << "the device worked longer than we waited";
+}
+
+TEST(Execute, PlanOutlivesItsGraphAndMayBeMoved) {
+    Plan plan;
+    Readback<std::uint32_t> result;
+    {
+        Graph g(device());
+        const Buffer a = g.buffer("a", {size});
+        addIota(g, a, 5);
+        result = g.readback<std::uint32_t>(a);
+        Plan made = g.compile();
+        plan = std::move(made);
+    }
+    EXPECT_EQ(result.wait(plan.execute()), iota(5));
+}
+
+TEST(Execute, PlanDestroyedWhileRunningIsSafe) {
+    DeviceBuffer counter = makeBuffer(device(), "counter", Values{0});
+    {
+        Graph g(device());
+        addCount(g, "count", g.import(counter));
+        Plan plan = g.compile();
+        for (int i = 0; i < 10; ++i) plan.execute();
+    }
+    std::uint32_t value = 0;
+    counter.download(&value, 4);
+    EXPECT_EQ(value, 10u);
+}
+
+TEST(Execute, ImportedTwiceIsOneResource) {
+    DeviceBuffer buffer(device(), "b", 16);
+    Graph g(device());
+    EXPECT_EQ(g.import(buffer).id, g.import(buffer).id);
+}
+
+TEST(Execute, CompilingAgainMakesNoNewPipelines) {
+    Graph g(device());
+    const Buffer a = g.buffer("a", {size});
+    addIota(g, a, 5);
+    auto result = g.readback<std::uint32_t>(a);
+    Plan first = g.compile();
+    const auto start = std::chrono::steady_clock::now();
+    Plan second = g.compile();
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    RecordProperty("compile_milliseconds", std::to_string(ms));
+    EXPECT_EQ(result.wait(second.execute()), iota(5));
+    EXPECT_EQ(result.wait(first.execute()), iota(5));
+}
+
+}  // namespace
+}  // namespace helio
