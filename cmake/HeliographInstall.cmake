@@ -13,10 +13,10 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/heliographConfig.cmake
     ${PROJECT_BINARY_DIR}/heliographConfig.cmake INSTALL_DESTINATION ${heliograph_package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/heliographConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/heliographConfig.cmake ${PROJECT_BINARY_DIR}/heliographConfigVersion.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/HeliographKernels.cmake
     DESTINATION ${heliograph_package_dir})
-# What helio_add_kernels needs of the source tree, for applications' own kernels.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/kernels DESTINATION ${heliograph_package_dir})
+# helio_add_kernels and what it needs of the source tree, for applications' own kernels.
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/HeliographKernels.cmake DESTINATION ${heliograph_package_dir} COMPONENT kernels)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/kernels DESTINATION ${heliograph_package_dir} COMPONENT kernels)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/passes
-    DESTINATION ${heliograph_package_dir}/shader_library
+    DESTINATION ${heliograph_package_dir}/shader_library COMPONENT kernels
     FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.h")

@@ -17,10 +17,11 @@ foreach(kernel IN LISTS KERNELS)
     string(APPEND kernels "extern const Kernel ${name};\nconstinit const Kernel ${name}{\"${PASS}/${name}\", "
         "std::span<const std::uint32_t>(helio_spirv_${name}), \"${source}\"};\n")
     if(SOURCES)
-        # A dependency file of one rule: "target: file file ..."; no blanks are allowed in the paths.
+        # A dependency file of one rule, "target: file file ...", all paths absolute, blanks escaped.
         file(READ ${spirv}.d rule)
-        string(REGEX REPLACE "^[^:]*:" "" rule "${rule}")
-        string(REGEX MATCHALL "[^ \t\r\n\\]+" files "${rule}")
+        string(REPLACE "\\ " " " rule "${rule}")
+        string(REGEX REPLACE "^[^:]*: *|[ \t\r\n]+$" "" rule "${rule}")
+        string(REPLACE " /" ";/" files "${rule}")
         list(APPEND sources ${files})
     endif()
 endforeach()
