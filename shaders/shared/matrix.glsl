@@ -6,16 +6,6 @@
 #include "shaders/shared/error_free.glsl"
 #include "shaders/shared/real.glsl"
 
-/// a0 b0 + a1 b1 + a2 b2 as if in twice the precision, rounded once (Ogita, Rump & Oishi 2005, Dot2).
-FN Real dotAccurate(Vec3 a, Vec3 b) {
-    Real e0, e1, e2, s1, s2;
-    Real p = twoProduct(a.x, b.x, e0);
-    p = twoSum(p, twoProduct(a.y, b.y, e1), s1);
-    p = twoSum(p, twoProduct(a.z, b.z, e2), s2);
-    precise Real sum = p + (((e0 + e1) + (e2 + s1)) + s2);
-    return sum;
-}
-
 /// The matrix of cofactors: det(m) times the inverse transposed, there for singular m too. It takes normals along
 /// with the tangents that m takes, scaled by the area's growth.
 FN Mat3 cofactorMatrix(Mat3 m) {
@@ -30,21 +20,31 @@ FN Mat3 inverseAccurate(Mat3 m) {
     return transpose(c) * (1.0 / dotAccurate(m[0], c[0]));
 }
 
-/// The 2x2 minors of columns 2 and 3 (i, j: rows), as the 3x3 minors below need them.
-FN Real minor2(Vec4 a, Vec4 b, int i, int j) { return differenceOfProducts(a[i], b[j], a[j], b[i]); }
+/// a . b for a vector a of floats and b in two parts: with minors kept in twice the precision, what cancels between
+/// them is not lost.
+FN Real dotTwoParts(Vec3 a, Vec3 high, Vec3 low) {
+    Real e0, e1, e2, s1, s2;
+    Real p = twoProduct(a.x, high.x, e0);
+    p = twoSum(p, twoProduct(a.y, high.y, e1), s1);
+    p = twoSum(p, twoProduct(a.z, high.z, e2), s2);
+    precise Real sum = p + ((((e0 + e1) + (e2 + s1)) + s2) + (a.x * low.x + a.y * low.y + a.z * low.z));
+    return sum;
+}
 
-/// The cofactors of column `a`'s entries in a matrix whose other columns are b, c, d, up to the column's sign.
+/// The cofactors of column a's entries in a matrix of columns a, b, c, d, up to the column's sign.
 FN Vec4 cofactorColumn(Vec4 b, Vec4 c, Vec4 d) {
-    Real m01 = minor2(c, d, 0, 1);
-    Real m02 = minor2(c, d, 0, 2);
-    Real m03 = minor2(c, d, 0, 3);
-    Real m12 = minor2(c, d, 1, 2);
-    Real m13 = minor2(c, d, 1, 3);
-    Real m23 = minor2(c, d, 2, 3);
-    return Vec4(dotAccurate(Vec3(b.y, -b.z, b.w), Vec3(m23, m13, m12)),
-                -dotAccurate(Vec3(b.x, -b.z, b.w), Vec3(m23, m03, m02)),
-                dotAccurate(Vec3(b.x, -b.y, b.w), Vec3(m13, m03, m01)),
-                -dotAccurate(Vec3(b.x, -b.y, b.z), Vec3(m12, m02, m01)));
+    // 2x2 minors of c and d, named by their rows, in two parts.
+    Real l01, l02, l03, l12, l13, l23;
+    Real m01 = differenceOfProducts(c.x, d.y, c.y, d.x, l01);
+    Real m02 = differenceOfProducts(c.x, d.z, c.z, d.x, l02);
+    Real m03 = differenceOfProducts(c.x, d.w, c.w, d.x, l03);
+    Real m12 = differenceOfProducts(c.y, d.z, c.z, d.y, l12);
+    Real m13 = differenceOfProducts(c.y, d.w, c.w, d.y, l13);
+    Real m23 = differenceOfProducts(c.z, d.w, c.w, d.z, l23);
+    return Vec4(dotTwoParts(Vec3(b.y, -b.z, b.w), Vec3(m23, m13, m12), Vec3(l23, l13, l12)),
+                dotTwoParts(Vec3(-b.x, b.z, -b.w), Vec3(m23, m03, m02), Vec3(l23, l03, l02)),
+                dotTwoParts(Vec3(b.x, -b.y, b.w), Vec3(m13, m03, m01), Vec3(l13, l03, l01)),
+                dotTwoParts(Vec3(-b.x, b.y, -b.z), Vec3(m12, m02, m01), Vec3(l12, l02, l01)));
 }
 
 FN Mat4 cofactorMatrix(Mat4 m) {

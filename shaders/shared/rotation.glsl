@@ -40,17 +40,35 @@ FN Vec3 eulerAngles(Mat3 r) {
 /// The matrix N of the cross product: N v = n x v.
 FN Mat3 crossMatrix(Vec3 n) { return Mat3(0.0, n.z, -n.y, -n.z, 0.0, n.x, n.y, -n.x, 0.0); }
 
+/// A vector of length 1 +- 1e-6 made unit to the rounding of its components, by one step of Newton's iteration with the
+/// length's error computed exactly.
+FN Vec4 unitAccurate(Vec4 v) {
+    Real e0, e1, e2, e3;
+    precise Real excess = twoProduct(v.x, v.x, e0) - 1.0;
+    excess = ((excess + twoProduct(v.y, v.y, e1)) + twoProduct(v.z, v.z, e2)) + twoProduct(v.w, v.w, e3);
+    excess = excess + ((e0 + e1) + (e2 + e3));
+    return v - v * (0.5 * excess);
+}
+FN Vec3 unitAccurate(Vec3 v) {
+    bool zero = lengthSquared(v) == 0.0;
+    Vec4 u = unitAccurate(Vec4(v, 0.0));
+    return zero ? v : Vec3(u);
+}
+
 /// Rodrigues: R = cos(angle) I + (1 - cos(angle)) n n^T + sin(angle) N, n the axis normalised; the axis (0, 0, 0)
 /// gives the identity. (The lecture's printed formula closes its bracket too late.)
 FN Mat3 rotationAbout(Vec3 axis, Real angle) {
-    Vec3 n = normalizeSafe(axis, Vec3(0.0));
+    Vec3 n = unitAccurate(normalizeSafe(axis, Vec3(0.0)));
     Real s, c, sHalf, cHalf;
-    realSinCos(angle, s, c);
-    realSinCos(0.5 * angle, sHalf, cHalf);
+    Real turn = lengthSquared(n) > 0.0 ? angle : 0.0;
+    realSinCos(turn, s, c);
+    realSinCos(0.5 * turn, sHalf, cHalf);
     Real versine = 2.0 * sHalf * sHalf;  // 1 - cos without cancellation
-    // 1 - versine (1 - x^2) rather than cos + versine x^2: exact ones at small angles, and the identity for n = 0.
-    Vec3 diagonal = Vec3(1.0 - versine * (n.y * n.y + n.z * n.z), 1.0 - versine * (n.x * n.x + n.z * n.z),
-                         1.0 - versine * (n.x * n.x + n.y * n.y));
+    // cos + versine x^2 = 1 - versine (y^2 + z^2): by whichever square is the lesser, which carries the lesser error.
+    Vec3 q = n * n;
+    Vec3 diagonal = Vec3(q.x < 0.5 ? c + versine * q.x : 1.0 - versine * (q.y + q.z),
+                         q.y < 0.5 ? c + versine * q.y : 1.0 - versine * (q.x + q.z),
+                         q.z < 0.5 ? c + versine * q.z : 1.0 - versine * (q.x + q.y));
     Vec3 sym = Vec3(n.y * n.z, n.x * n.z, n.x * n.y) * versine;
     Vec3 skew = n * s;
     return Mat3(diagonal.x, sym.z + skew.z, sym.y - skew.y, sym.z - skew.z, diagonal.y, sym.x + skew.x,
@@ -74,7 +92,7 @@ FN Vec4 quaternionConjugate(Vec4 q) { return Vec4(-q.x, -q.y, -q.z, q.w); }
 FN Vec4 quaternionNormalize(Vec4 q) {
     Vec4 u = q * (1.0 / powerOfTwoBelow(maxComponent(abs(q))));
     Real squared = u.x * u.x + u.y * u.y + u.z * u.z + u.w * u.w;
-    return squared > 0.0 ? u * (1.0 / sqrt(squared)) : QUATERNION_IDENTITY;
+    return squared > 0.0 ? unitAccurate(u * (1.0 / sqrt(squared))) : QUATERNION_IDENTITY;
 }
 
 /// Of the rotation about an axis of any length; the axis (0, 0, 0) gives the identity.
@@ -94,10 +112,13 @@ FN Vec3 quaternionRotate(Vec4 q, Vec3 v) {
 
 /// The rotation matrix of a unit quaternion.
 FN Mat3 quaternionToMatrix(Vec4 q) {
-    Real x = q.x, y = q.y, z = q.z, w = q.w;
-    return Mat3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w),
-                2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w),
-                2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y));
+    Vec4 u = q + q;
+    Real xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, ww = q.w * q.w;
+    Real xy = u.x * q.y, xz = u.x * q.z, yz = u.y * q.z;
+    Real xw = u.x * q.w, yw = u.y * q.w, zw = u.z * q.w;
+    return Mat3((ww + xx) - (yy + zz), xy + zw, xz - yw,  //
+                xy - zw, (ww + yy) - (xx + zz), yz + xw,  //
+                xz + yw, yz - xw, (ww + zz) - (xx + yy));
 }
 
 /// The unit quaternion of a rotation matrix and w >= 0: by the largest of the four

@@ -102,10 +102,8 @@ FN AffineParts decomposeAffine(Mat4 m) {
     p.translation = Vec3(m[3]);
     p.rotation = quaternionFromMatrix(Mat3(x, y, z));
     p.scale = Vec3(sx, sy, sz);
-    // b = sy y + (shear.x sx) x and c = sz z + (shear.z sy) y + ((shear.y + shear.x shear.z) sx) x.
-    Real xy = dot(x, b) / sx;
-    Real yz = dot(y, c) / sy;
-    p.shear = Vec3(xy, dot(x, c) / sx - xy * yz, yz);
+    // b = sy y + (shear.x sx) x and c = sz z + (shear.z sy) y + (shear.y sx) x.
+    p.shear = Vec3(dot(x, b) / sx, dot(x, c) / sx, dot(y, c) / sy);
     return p;
 }
 
