@@ -117,8 +117,10 @@ private:
         if (!handOver.former.empty()) step.barriers.push_back(handOver);
         if (use.layout != state.layout) {
             step.barriers.push_back({.resource = use.resource,
-                                     // Follows the barrier above, or the one that opens the execution.
+                                     // Follows the barrier above, or the one that opens the execution. The
+                                     // access chains them for the synchronization validation too.
                                      .fromStages = stagesOf(use),
+                                     .fromAccess = accessesOf(use) & access::Writes,
                                      .toStages = stagesOf(use),
                                      .toAccess = accessesOf(use),
                                      .oldLayout = Layout::Undefined,
