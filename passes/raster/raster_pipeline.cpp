@@ -1,5 +1,7 @@
 #include "passes/raster/raster_pipeline.hpp"
 
+#include "passes/raster/push.hpp"
+
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
@@ -19,26 +21,6 @@ constexpr std::uint32_t kRecordBytes = 64;
 constexpr std::uint64_t kStateBytes = 64;
 constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52;
 constexpr std::uint32_t kSetupTriangles = 256;  // of a workgroup of set-up
-
-/** Push constants of every kernel that takes the view. */
-struct RasterPush {
-    double rowX[4], rowY[4], rowW[4];
-    double depthOffset, depthSlope;
-    std::uint32_t size, first, count, flags;
-};
-static_assert(sizeof(RasterPush) == 128);
-
-RasterPush makePush(const RasterView& view, bool cullBack, std::uint32_t first, std::uint32_t count) {
-    return {{view.rowX.x, view.rowX.y, view.rowX.z, view.eye.x},
-            {view.rowY.x, view.rowY.y, view.rowY.z, view.eye.y},
-            {view.rowW.x, view.rowW.y, view.rowW.z, view.eye.z},
-            view.depthOffset,
-            view.depthSlope,
-            view.width | view.height << 16,
-            first,
-            count,
-            (view.orthographic ? 1u : 0u) | (cullBack ? 2u : 0u)};
-}
 
 std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
     std::uint64_t cells = 0;
@@ -103,8 +85,8 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
     graph.fill("raster.clearCounts", counts, 0);
     for (std::uint32_t first = 0; first < triangles.count; first += batch) {
         const std::uint32_t count = std::min(batch, triangles.count - first);
-        const bool cullBack = options_.cullBackFaces;
-        const auto push = [view, cullBack, first, count] { return makePush(*view, cullBack, first, count); };
+        const std::uint32_t flags = options_.cullBackFaces ? kRasterCullBack : 0u;
+        const auto push = [view, flags, first, count] { return makeRasterPush(*view, flags, first, count); };
 
         graph.fill("raster.clearState", state, 0);
         graph.compute("raster.setup", shaders::rasterSetup)

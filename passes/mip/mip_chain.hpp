@@ -1,0 +1,56 @@
+#pragma once
+/** @file
+ * Mip generation: every level of every texture of a scene as linear RGBA in full floats, each the 2:1 box of
+ * the one before, with weights that keep the mean of odd sizes too. 1 + floor(log2(max(width, height)))
+ * levels.
+ */
+#include <heliograph/device.hpp>
+#include <heliograph/graph.hpp>
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace helio {
+
+/** Number of levels of a full chain, the base counted. */
+std::uint32_t mipLevelCount(std::uint32_t width, std::uint32_t height);
+
+/** Where levels lie; the layout of shaders/texture/mip_table.glsl and of passes/mip/mip.glsl. Host only. */
+struct MipLayout {
+    /** From packed textures (offset, width, height, flags). Textures without the mipmap flag get no levels,
+     * those that share their texels share the levels. Throws InputError beyond 2^27 texels in all. */
+    explicit MipLayout(std::span<const glm::uvec4> textures);
+
+    std::vector<glm::uvec4> table;
+    std::vector<glm::uvec4> work;
+    struct Level {
+        std::uint32_t firstItem, items, invocations;
+    };
+    std::vector<Level> levels;  ///< work of levels 1, 2, ...
+    std::uint64_t texels = 0;   ///< of all levels from 1
+};
+
+/** Mip levels on the device. Must outlive the plans it is declared in. */
+class MipChains {
+public:
+    MipChains(Device& device, std::span<const glm::uvec4> textures);
+
+    /** Whether any texture has levels to make. */
+    bool needed() const { return layout_.texels > 0; }
+    /** Declares the passes that make all levels. `textures` are read bindings of uTextures, uTexels8 and
+     * uTexelsFloat (DeviceScene::bindings). The levels stay in memory: run once for a scene. */
+    void declare(Graph& graph, const std::vector<Binding>& textures, const SpecConstants& spec);
+    /** Read bindings of uMipTable and uMips for a pass that samples. */
+    std::vector<Binding> bindings(Graph& graph);
+
+    const MipLayout& layout() const { return layout_; }
+
+private:
+    MipLayout layout_;
+    DeviceBuffer table_, work_, mips_;
+};
+
+}  // namespace helio

@@ -1,0 +1,61 @@
+#pragma once
+/** @file
+ * First shading of a visibility buffer. Per pixel: perspective-correct attributes with exact derivatives,
+ * base colour (factor, vertex colour, texture filtered over mip levels), flat or smooth normal turned to the
+ * viewer, and two-sided Lambert reflection of
+ *  - emissive surfaces in the light table, by Lambert's formula for polygons cut at the horizon: the exact
+ *    irradiance of what nothing covers,
+ *  - point, spot and directional lights with glTF's falloff,
+ *  - a constant environment over the whole hemisphere,
+ * plus the surface's own emission (front face, or both where double-sided). What is left out is in skipped().
+ */
+#include "passes/mip/mip_chain.hpp"
+#include "passes/raster/raster_pipeline.hpp"
+#include "passes/scene/device_scene.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/graph.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace helio {
+
+/** Per pixel, rows from the top; the channels of the path tracer's first hit. */
+struct ShadeOutput {
+    Buffer color;        ///< vec4: linear RGB radiance, 1 (0 for a miss, whose colour is the environment's)
+    Buffer albedoDepth;  ///< vec4: base colour, distance along the viewing axis; 0 for a miss
+    Buffer normal;       ///< vec4: unit shading normal towards the viewer, 0; 0 for a miss
+    Buffer ids;          ///< ivec2: instance, triangle within it; -1 for a miss
+};
+
+/** Shades one scene. Must outlive the plans it is declared in, as must the scene. */
+class ShadePipeline {
+public:
+    ShadePipeline(Device& device, DeviceScene& scene);
+
+    /** The levels that shading samples; run their passes once before (MipChains::needed, declareMips). */
+    MipChains& mips() { return mips_; }
+    /** Declares the passes that make the mip levels. */
+    void declareMips(Graph& graph);
+
+    /** Declares rasterization of the scene and its shading. `view` as for RasterPipeline::declare. */
+    ShadeOutput declare(Graph& graph, const RasterOutput& raster, std::shared_ptr<const RasterView> view);
+
+    /** The scene's triangles for RasterPipeline::declare. */
+    RasterTriangles triangles(Graph& graph);
+
+    /** What this shading leaves out of a scene, as WHAT and WHY for the statistics. */
+    std::vector<std::pair<std::string, std::string>> skipped() const;
+
+private:
+    DeviceScene& scene_;
+    MipChains mips_;
+    DeviceBuffer environment_;
+    std::uint64_t maxStorageBufferRange_;
+};
+
+}  // namespace helio

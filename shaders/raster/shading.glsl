@@ -1,0 +1,140 @@
+// First shading of a visibility buffer: base colour, two-sided Lambert under unoccluded lights, and emission.
+#ifndef SHADERS_RASTER_SHADING_GLSL
+#define SHADERS_RASTER_SHADING_GLSL
+
+#include "shaders/raster/polygon_light.glsl"
+#include "shaders/raster/surface.glsl"
+#include "shaders/scene/lights.glsl"
+#include "shaders/scene/materials.glsl"
+#include "shaders/texture/trilinear.glsl"
+
+layout(constant_id = 120) const bool FILTER_MIPS = true;    ///< some texture has mip levels
+layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
+layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth
+layout(set = 0, binding = 1) uniform usamplerBuffer uSlots;         ///< place of a triangle by its id
+layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first id of every instance
+layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< one texel: constant radiance of the surroundings
+
+/// A material's texture at `row` (3 or 5) over the pixel's footprint; white where there is none.
+vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
+    uvec4 first = texelFetch(uMaterials, material * MATERIAL_TEXELS + row);
+    uvec4 second = texelFetch(uMaterials, material * MATERIAL_TEXELS + row + 1);
+    bool set0 = second.w == 0u;
+    vec3 u = uintBitsToFloat(first.xyz), v = uintBitsToFloat(second.xyz);
+    vec3 p = vec3(set0 ? uv.xy : uv.zw, 1.0);
+    vec2 px = set0 ? dx.xy : dx.zw, py = set0 ? dy.xy : dy.zw;
+    vec2 at = vec2(dot(u, p), dot(v, p));
+    vec2 atX = vec2(dot(u.xy, px), dot(v.xy, px)), atY = vec2(dot(u.xy, py), dot(v.xy, py));
+    vec4 value = vec4(1.0);
+    if (int(first.w) >= 0)
+        value = FILTER_MIPS ? sampleTrilinear(int(first.w), at, atX, atY) : sampleTexture(int(first.w), at);
+    return value;
+}
+
+struct Shaded {
+    bool hit;
+    vec3 emission;
+    vec3 albedo;
+    vec3 normal;    // towards the viewer
+    vec3 position;  // relative to the eye
+    float depth;
+    int instance;
+    int triangle;   // within the instance
+};
+
+/// Everything of a pixel that light does not change.
+Shaded shadePoint(ivec2 pixel, int index) {
+    uvec2 key = visibility[index];
+    Shaded shaded;
+    shaded.hit = (key.x | key.y) != 0u;
+    int g = shaded.hit ? int(~key.x) : 0;
+    int slot = g;
+    if (!SCENE_ORDER) slot = int(texelFetch(uSlots, g).x);
+    Triangle source = fetchTriangle(slot);
+    Surface surface = surfaceAt(source, pixel);
+
+    vec4 uv = vec4(0.0), dx = vec4(0.0), dy = vec4(0.0);
+    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES) {
+        vec4 uv0 = texelFetch(uTexcoords, g * 3), e1 = texelFetch(uTexcoords, g * 3 + 1) - uv0,
+             e2 = texelFetch(uTexcoords, g * 3 + 2) - uv0;
+        uv = uv0 + surface.b.y * e1 + surface.b.z * e2;
+        dx = surface.db1.x * e1 + surface.db2.x * e2;
+        dy = surface.db1.y * e1 + surface.db2.y * e2;
+    }
+    vec4 base = uintBitsToFloat(texelFetch(uMaterials, source.material * MATERIAL_TEXELS));
+    if (HAS_COLORS) base *= vertexColor(g, surface.b);
+    if (HAS_BASE_TEXTURES) base *= filteredMaterialTexture(source.material, 3, uv, dx, dy);
+    shaded.emission = vec3(0.0);
+    if (HAS_EMISSION) {
+        uvec4 row = texelFetch(uMaterials, source.material * MATERIAL_TEXELS + 1);
+        bool emits = surface.front || (row.w & MATERIAL_DOUBLE_SIDED) != 0u;
+        shaded.emission = emits ? uintBitsToFloat(row.xyz) : vec3(0.0);
+        if (HAS_EMISSION_TEXTURES)
+            shaded.emission *= filteredMaterialTexture(source.material, 5, uv, dx, dy).rgb;
+    }
+    vec3 normal = shadingNormal(g, surface.b, surface.faceNormal);
+    shaded.normal = surface.front ? normal : -normal;
+    shaded.albedo = base.rgb;
+    shaded.position = surface.position;
+    shaded.depth = surface.depth;
+    shaded.instance = source.instance;
+    shaded.triangle = g - int(texelFetch(uInstanceFirst, source.instance).x);
+    return shaded;
+}
+
+/// Unoccluded irradiance of one light of the table on a surface: exact for a uniform polygon.
+vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
+    int first = light * LIGHT_TEXELS;
+    dvec3 eye = dvec3(push.rowX.w, push.rowY.w, push.rowW.w);
+    vec3 corner = vec3(dvec3(uintBitsToFloat(texelFetch(uLights, first).xyz)) - eye) - position;
+    vec3 edge1 = uintBitsToFloat(texelFetch(uLights, first + 1).xyz);
+    uvec4 edge2Bits = texelFetch(uLights, first + 2);
+    vec3 edge2 = uintBitsToFloat(edge2Bits.xyz);
+    vec4 strength = uintBitsToFloat(texelFetch(uLights, first + 3));
+    vec4 facing = uintBitsToFloat(texelFetch(uLights, first + 4));
+    uint kind = edge2Bits.w;
+    vec3 irradiance = vec3(0.0);
+    if (HAS_AREA_LIGHTS) {
+        float height = -dot(facing.xyz, corner);
+        bool seen = (strength.w < 0.0 ? abs(height) : height) > facing.w;
+        vec3 b = corner + edge1, d = corner + edge2;
+        bool triangle = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE;
+        float factor = quadIrradiance(normal, corner, b, triangle ? b : b + edge2, d);
+        vec3 radiance = strength.rgb;
+        if (HAS_EMISSION_TEXTURES) {
+            // One value for the whole light: the texture over all of the triangle.
+            uvec4 identity = texelFetch(uLights, first + 5);
+            int g = int(identity.x);
+            vec4 uv0 = texelFetch(uTexcoords, g * 3), e1 = texelFetch(uTexcoords, g * 3 + 1) - uv0,
+                 e2 = texelFetch(uTexcoords, g * 3 + 2) - uv0;
+            if (triangle) radiance *= filteredMaterialTexture(int(identity.y), 5, uv0 + (e1 + e2) / 3.0, e1, e2).rgb;
+        }
+        irradiance = seen && kind <= LIGHT_PARALLELOGRAM ? radiance * factor : vec3(0.0);
+    }
+    if (HAS_PUNCTUAL_LIGHTS) {
+        bool directional = kind == LIGHT_DIRECTIONAL;
+        vec3 toLight = directional ? -facing.xyz : corner;
+        float squared = dot(toLight, toLight);
+        vec3 direction = toLight * inversesqrt(max(squared, 1e-37));
+        float attenuation = directional ? 1.0 : 1.0 / max(squared, 1e-37);
+        float cone = clamp(-dot(facing.xyz, direction) * edge2.x + edge2.y, 0.0, 1.0);
+        attenuation *= kind == LIGHT_SPOT ? cone * cone : 1.0;
+        // KHR_lights_punctual's window, 0 beyond the range.
+        float ratio = squared / (edge2.z * edge2.z);
+        attenuation *= !directional && edge2.z > 0.0 ? clamp(1.0 - ratio * ratio, 0.0, 1.0) : 1.0;
+        vec3 value = strength.rgb * (attenuation * max(dot(normal, direction), 0.0));
+        irradiance = kind >= LIGHT_POINT && squared > 0.0 ? value : irradiance;
+    }
+    return irradiance;
+}
+
+/// Radiance that a Lambertian surface reflects of the lights push.first to push.first + push.count - 1.
+vec3 reflectedLight(Shaded shaded) {
+    vec3 irradiance = vec3(0.0);
+    if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+        for (uint light = push.first; light < push.first + push.count; ++light)
+            irradiance += lightIrradiance(int(light), shaded.position, shaded.normal);
+    return shaded.albedo * (INV_PI * irradiance);
+}
+
+#endif
