@@ -81,6 +81,55 @@ TEST(OpenDevice, PrintsNothingOfItsOwn) {
     EXPECT_EQ(std::ranges::count(finished.output, '\n'), 1) << finished.output;
 }
 
+/** Environment under which devices seem to lack something (see lesser_device_layer.cpp). */
+std::string lacking(const std::string& what) {
+    return "-u HELIOGRAPH_DEVICE VK_LAYER_PATH=" GPU_LAYER_FOLDER
+           " VK_INSTANCE_LAYERS=VK_LAYER_HELIOGRAPH_lesser_device HELIOGRAPH_TEST_LACKS=" +
+           what;
+}
+
+TEST(OpenDevice, BelowVulkan13IsRefusedWithTheReasonAndLogged) {
+    const std::string name = listDevices().front().name;
+    auto finished = runProgram(lacking("vulkan13"), kProbe + " open auto");
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_NE(finished.output.find("heliograph: info: device 0 '" + name +
+                                   "' is refused: apiVersion is only 1.2.0 and 1.3 is needed\n"),
+              std::string::npos)
+        << finished.output;
+    EXPECT_NE(finished.output.find("DeviceError: no usable Vulkan device; the loader lists: 0 '" + name +
+                                   "' (refused: apiVersion is only 1.2.0 and 1.3 is needed)"),
+              std::string::npos)
+        << finished.output;
+    finished = runProgram(lacking("vulkan13"), kProbe + " open 0");
+    EXPECT_EQ(finished.status, 1) << finished.output;
+    EXPECT_NE(finished.output.find("DeviceError: device '0' names no usable device"), std::string::npos)
+        << finished.output;
+    finished = runProgram(lacking("vulkan13"), kProbe + " list");
+    EXPECT_EQ(finished.output.find(name + "|1.2.0|apiVersion is only 1.2.0 and 1.3 is needed"), 0u)
+        << finished.output;
+}
+
+TEST(OpenDevice, WithoutARequiredFeatureIsRefusedByTheFeaturesName) {
+    for (const std::string feature : {"timelineSemaphore", "synchronization2"}) {
+        const auto finished = runProgram(lacking(feature), kProbe + " open auto");
+        EXPECT_EQ(finished.status, 1);
+        EXPECT_NE(finished.output.find("(refused: " + feature + " is missing)"), std::string::npos)
+            << finished.output;
+    }
+    const auto finished = runProgram(lacking("smallStorageRange"), kProbe + " open auto");
+    EXPECT_NE(finished.output.find("(refused: maxStorageBufferRange is only 65536 bytes)"), std::string::npos)
+        << finished.output;
+}
+
+TEST(OpenDevice, WithoutAnOptionalFeatureOpensAndSaysSo) {
+    const auto finished =
+        runProgram(lacking("shaderInt64,shaderBufferInt64Atomics,shaderFloat64"), kProbe + " lacking auto");
+    EXPECT_EQ(finished.status, 0);
+    for (const std::string feature : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"}) {
+        EXPECT_NE(finished.output.find("lacks " + feature + "\n"), std::string::npos) << finished.output;
+    }
+}
+
 TEST(OpenDevice, WithoutAnyDriverSaysWhatToInstall) {
     const auto finished = runProgram("VK_ICD_FILENAMES=/nonexistent.json VK_DRIVER_FILES=/nonexistent.json",
                                      kProbe + " open auto");

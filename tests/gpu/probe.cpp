@@ -1,5 +1,5 @@
 // Does one thing with a device and prints what came of it on one line: for tests that need a process of their
-// own, with an environment of its own. Usage: gpu_probe open DEVICE | validate | list
+// own, with an environment of its own. Usage: gpu_probe open DEVICE | lacking DEVICE | validate | list
 #include "engine/core/log.hpp"
 
 #include <heliograph/device.hpp>
@@ -19,9 +19,12 @@ int main(int argc, char** argv) {
             return 0;
         }
         helio::DeviceOptions options;
-        if (what == "open" && argc > 2) options.device = argv[2];
+        if (argc > 2) options.device = argv[2];
         options.validation = what == "validate";
         const helio::Device device(options);
+        for (const helio::Capability& capability : device.info().capabilities) {
+            if (what == "lacking" && !capability.present) std::printf("lacks %s\n", capability.name.c_str());
+        }
         std::printf("opened %s\n", device.info().name.c_str());
         return 0;
     } catch (const helio::DeviceError& error) {
