@@ -104,7 +104,7 @@ const Rule kRules[] = {
      }},
     {"rayQuery", false, "nothing: the engine's own traversal is used on every device",
      [](F f) { return f.rayQuery.rayQuery == VK_TRUE; }},
-    {"memoryBudget", false, "warnings before the device's memory is full",
+    {"memoryBudget", false, "the driver's budget in messages about exhausted memory",
      [](F f) { return f.hasExtension(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME); }},
 
     {"maxPushConstantsSize", true, kRefused,

@@ -138,7 +138,7 @@ std::vector<DeviceInfo> listDevices() {
 
 Device::Impl::Impl(const DeviceOptions& options)
     : opened(openDevice(options)),
-      memory(physical, device, unifiedMemory(facts)),
+      memory(physical, device, unifiedMemory(facts), facts.hasExtension(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)),
       pipelines(device, facts.properties,
                 options.pipelineCache.empty() ? gpu::defaultPipelineCacheFolder() : options.pipelineCache),
       queue(device, opened.family),

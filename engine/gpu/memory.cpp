@@ -92,8 +92,13 @@ void Allocation::reset() {
     block_ = nullptr;
 }
 
-Memory::Memory(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, bool unifiedMemory)
-    : device_(device), properties_(physical.getMemoryProperties()), unified_(unifiedMemory) {
+Memory::Memory(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, bool unifiedMemory,
+               bool knowsBudget)
+    : physical_(physical),
+      device_(device),
+      properties_(physical.getMemoryProperties()),
+      unified_(unifiedMemory),
+      knowsBudget_(knowsBudget) {
     const auto chain =
         physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     granularity_ = std::max<std::uint64_t>(
@@ -180,8 +185,8 @@ Memory::Block* Memory::addBlock(std::uint32_t type, MemoryContent content, std::
         }
         blocks_.push_back({std::move(memory), mapped, type, content, dedicated, RangeAllocator(bytes)});
     } catch (const vk::SystemError& error) {
-        failure =
-            fmt::format("the driver refuses {} of memory type {}: {}", mebibytes(bytes), type, error.what());
+        failure = fmt::format("the driver refuses {} of memory type {} ({}): {}", mebibytes(bytes), type,
+                              heapState(type), error.what());
         return nullptr;
     }
     statistics_.reservedBytes += bytes;
@@ -205,6 +210,17 @@ void Memory::free(Block& block, std::uint64_t offset, std::uint64_t bytes) {
     statistics_.reservedBytes -= block.ranges.size();
     --statistics_.blocks;
     blocks_.remove_if([&](const Block& each) { return &each == &block; });
+}
+
+std::string Memory::heapState(std::uint32_t type) const {
+    const std::uint32_t heap = properties_.memoryTypes[type].heapIndex;
+    if (!knowsBudget_) return fmt::format("heap of {}", mebibytes(properties_.memoryHeaps[heap].size));
+    const auto budget = physical_
+                            .getMemoryProperties2<vk::PhysicalDeviceMemoryProperties2,
+                                                  vk::PhysicalDeviceMemoryBudgetPropertiesEXT>()
+                            .get<vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
+    return fmt::format("heap with {} of a budget of {} in use", mebibytes(budget.heapUsage[heap]),
+                       mebibytes(budget.heapBudget[heap]));
 }
 
 MemoryStatistics Memory::statistics() const {

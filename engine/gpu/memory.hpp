@@ -75,7 +75,9 @@ private:
  * a block gets a driver allocation of its own. Thread-safe. */
 class Memory {
 public:
-    Memory(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, bool unifiedMemory);
+    /** `knowsBudget`: VK_EXT_memory_budget is there, for messages. */
+    Memory(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, bool unifiedMemory,
+           bool knowsBudget);
     ~Memory();
 
     /** Throws OutOfDeviceMemory that names the request. */
@@ -96,12 +98,16 @@ private:
     Block* addBlock(std::uint32_t type, MemoryContent content, std::uint64_t bytes, bool dedicated,
                     std::string& failure);
 
+    std::string heapState(std::uint32_t type) const;
+
+    const vk::raii::PhysicalDevice& physical_;
     const vk::raii::Device& device_;
     vk::PhysicalDeviceMemoryProperties properties_;
     std::uint64_t maxAllocationBytes_ = 0;
     std::uint64_t granularity_ = 1;
     std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
     bool unified_ = false;
+    bool knowsBudget_ = false;
 
     mutable std::mutex mutex_;
     std::list<Block> blocks_;

@@ -216,9 +216,8 @@ DescriptorSet::DescriptorSet(Device::Impl& gpu, const ComputePipeline& pipeline,
             assert(type != types.end() && "the pipeline has no such binding");
             buffers[i] = vk::DescriptorBufferInfo{
                 .buffer = write.buffer, .offset = write.offset, .range = write.range};
-            images[i] = vk::DescriptorImageInfo{.sampler = write.sampler,
-                                                .imageView = write.imageView,
-                                                .imageLayout = write.imageLayout};
+            images[i] = vk::DescriptorImageInfo{
+                .sampler = write.sampler, .imageView = write.imageView, .imageLayout = write.imageLayout};
             views[i] = write.texelView;
             updates.push_back({.dstSet = set_,
                                .dstBinding = write.binding,

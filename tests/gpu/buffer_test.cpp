@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <random>
+#include <thread>
 
 namespace helio {
 namespace {
@@ -134,6 +136,29 @@ void main() {
     std::vector<std::uint32_t> out(16);
     result.download(out.data(), 64);
     EXPECT_EQ(out, std::vector<std::uint32_t>(16, power));
+}
+
+TEST(DeviceBuffer, ThreadsMayUploadAndDownloadAtOnce) {
+    // The validation layer also watches for objects that two threads use at once.
+    Device& device = test::device();
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> threads;
+    for (std::uint32_t thread = 0; thread < 4; ++thread) {
+        threads.emplace_back([&, thread] {
+            for (std::uint32_t round = 0; round < 25; ++round) {
+                const std::vector<std::uint32_t> in(20000, thread * 1000 + round);
+                DeviceBuffer buffer = makeBuffer(device, "of a thread", in);
+                gpu::Recording commands = device.impl().queue.begin("of a thread");
+                commands->fillBuffer(*buffer.impl()->resource.buffer, 0, 4, thread);
+                device.impl().queue.submit(std::move(commands));
+                std::vector<std::uint32_t> out(in.size());
+                buffer.download(out.data(), out.size() * 4);
+                if (out[0] != thread || std::ranges::count(out, in[1]) < 19999) ++wrong;
+            }
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(DeviceBuffer, TakesAtLeastFourBytesAndHasADeviceAddress) {
