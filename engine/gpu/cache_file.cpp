@@ -59,12 +59,11 @@ std::uint64_t cacheHash(std::span<const std::byte> data) {
     return hash;
 }
 
-std::optional<std::vector<std::byte>> readCacheFile(const std::filesystem::path& file,
-                                                    const vk::PhysicalDeviceProperties& properties) {
+std::optional<std::vector<std::byte>> readCacheData(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) return std::nullopt;
     const auto ignore = [&](const char* why) -> std::optional<std::vector<std::byte>> {
-        log().info("pipeline cache '{}' is passed over: {}", file.string(), why);
+        log().info("cache file '{}' is passed over: {}", file.string(), why);
         return std::nullopt;
     };
     std::error_code error;
@@ -72,14 +71,23 @@ std::optional<std::vector<std::byte>> readCacheFile(const std::filesystem::path&
     FileHeader header;
     const FileHeader expected;
     if (error || !in.read(reinterpret_cast<char*>(&header), sizeof header)) return ignore("it is too short");
-    if (header.magic != expected.magic) return ignore("it is not a pipeline cache");
+    if (header.magic != expected.magic) return ignore("it is not one of the engine's");
     // Compared before anything is allocated: a damaged length must not ask for terabytes.
     if (header.bytes != size - sizeof header) return ignore("its length is wrong");
     std::vector<std::byte> data(header.bytes);
     if (!in.read(reinterpret_cast<char*>(data.data()), std::streamsize(data.size())))
         return ignore("it is too short");
     if (cacheHash(data) != header.hash) return ignore("it is damaged");
-    if (!belongsTo(data, properties)) return ignore("another device or driver wrote it");
+    return data;
+}
+
+std::optional<std::vector<std::byte>> readCacheFile(const std::filesystem::path& file,
+                                                    const vk::PhysicalDeviceProperties& properties) {
+    auto data = readCacheData(file);
+    if (data && !belongsTo(*data, properties)) {
+        log().info("pipeline cache '{}' is passed over: another device or driver wrote it", file.string());
+        return std::nullopt;
+    }
     return data;
 }
 
@@ -90,7 +98,7 @@ bool writeCacheFile(const std::filesystem::path& file, std::span<const std::byte
     std::filesystem::create_directories(file.parent_path(), error);
     const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (descriptor < 0) {
-        log().info("pipeline cache '{}' cannot be written: {}", file.string(), std::strerror(errno));
+        log().info("cache file '{}' cannot be written: {}", file.string(), std::strerror(errno));
         return false;
     }
     const FileHeader header{.bytes = data.size(), .hash = cacheHash(data)};
@@ -99,7 +107,7 @@ bool writeCacheFile(const std::filesystem::path& file, std::span<const std::byte
     ::close(descriptor);
     if (written) std::filesystem::rename(temporary, file, error);
     if (!written || error) {
-        log().info("pipeline cache '{}' cannot be written", file.string());
+        log().info("cache file '{}' cannot be written", file.string());
         std::filesystem::remove(temporary, error);
         return false;
     }

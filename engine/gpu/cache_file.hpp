@@ -1,5 +1,5 @@
 #pragma once
-/** @file The file that keeps a driver's pipeline cache between processes. */
+/** @file Files that keep caches between processes: whole or not at all, and never trusted. */
 #include "engine/gpu/vk.hpp"
 
 #include <cstddef>
@@ -18,8 +18,12 @@ std::string cacheFileName(const vk::PhysicalDeviceProperties& properties);
 /** FNV-1a, 64 bits. */
 std::uint64_t cacheHash(std::span<const std::byte> data);
 
-/** The data in the file, or nothing where there is no file, or it is damaged (length, hash) or was made by
- * another device or driver (the header of Vulkan's pipeline cache data, version one). Never throws. */
+/** What writeCacheFile wrote, or nothing where there is no file or it is damaged (length, hash). Never
+ * throws. */
+std::optional<std::vector<std::byte>> readCacheData(const std::filesystem::path& file);
+
+/** The same for a driver's data; nothing also where another device or driver made it (the header of
+ * Vulkan's pipeline cache data, version one). Never throws. */
 std::optional<std::vector<std::byte>> readCacheFile(const std::filesystem::path& file,
                                                     const vk::PhysicalDeviceProperties& properties);
 

@@ -2,12 +2,15 @@
 
 #include "engine/shader/glsl_compiler.hpp"
 #include "engine/shader/source_tree.hpp"
+#include "engine/shader/spirv_files.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <exception>
 #include <future>
 #include <map>
 #include <memory>
@@ -35,6 +38,7 @@ struct Cache {
     std::map<std::string, RuntimeSource, std::less<>> runtimeSources;  ///< by Kernel::source
     std::map<std::string, std::unique_ptr<std::string>, std::less<>> names;
     std::atomic<std::uint64_t> compiled{0};
+    std::atomic<std::uint64_t> loaded{0};
     std::atomic<std::uint64_t> reused{0};
 };
 
@@ -54,13 +58,25 @@ std::string_view intern(std::string_view text) {
     return *found->second;
 }
 
-/** Embedded files never change; those of an overlay may. */
+/** Whether a file of a folder laid over the embedded ones has changed, or come, or gone. */
 bool stale(const CompiledGlsl& result) {
-    if (shaderOverlay().empty()) return false;
-    for (const auto& [path, text] : result.includes) {
-        if (readShaderSource(path) != text) return true;
+    return std::any_of(result.includes.begin(), result.includes.end(),
+                       [](const auto& file) { return readShaderSource(file.first) != file.second; });
+}
+
+CompiledGlsl loadOrCompile(const std::string& path, const std::string& glsl, const KernelVariant& variant,
+                           KeepOnDisk keep) {
+    Cache& c = cache();
+    if (keep == KeepOnDisk::Yes) {
+        if (auto loaded = loadSpirv(path, glsl, variant)) {
+            ++c.loaded;
+            return std::move(*loaded);
+        }
     }
-    return false;
+    ++c.compiled;
+    CompiledGlsl compiled = compileGlsl(path, glsl, variant);
+    if (keep == KeepOnDisk::Yes) storeSpirv(path, glsl, variant, compiled);
+    return compiled;
 }
 
 Kernel makeKernel(std::string_view name, std::string_view source, const Result& result) {
@@ -72,7 +88,7 @@ Kernel makeKernel(std::string_view name, std::string_view source, const Result& 
 }  // namespace
 
 std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const std::string& glsl,
-                                                  const KernelVariant& variant) {
+                                                  const KernelVariant& variant, KeepOnDisk keep) {
     Cache& c = cache();
     const Key key{path, glsl, variant.defines, variant.generated};
     std::promise<Result> promise;
@@ -92,14 +108,20 @@ std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const
         c.replaced.push_back(std::move(result));
         c.kernels.insert_or_assign(key, promise.get_future().share());
     }
-    ++c.compiled;
-    const auto result = std::make_shared<const CompiledGlsl>(compileGlsl(path, glsl, variant));
-    promise.set_value(result);
-    return result;
+    try {
+        const auto result = std::make_shared<const CompiledGlsl>(loadOrCompile(path, glsl, variant, keep));
+        promise.set_value(result);
+        return result;
+    } catch (...) {  // out of memory: those who wait get it too, those who come later try again
+        promise.set_exception(std::current_exception());
+        const std::scoped_lock lock(c.mutex);
+        c.kernels.erase(key);
+        throw;
+    }
 }
 
 KernelCacheStatistics kernelCacheStatistics() {
-    return {cache().compiled, cache().reused};
+    return {cache().compiled, cache().loaded, cache().reused};
 }
 
 Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant) {
@@ -117,11 +139,12 @@ Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant) {
         throw ShaderError(fmt::format("kernel '{}': its source '{}' is not in the embedded tree", kernel.name,
                                       kernel.source));
     }
-    return makeKernel(intern(kernel.name), intern(kernel.source), compileCached(path, *text, variant));
+    return makeKernel(intern(kernel.name), intern(kernel.source),
+                      compileCached(path, *text, variant, KeepOnDisk::Yes));
 }
 
 Kernel compileKernel(std::string_view name, std::string_view glsl, const KernelVariant& variant) {
-    const Result result = compileCached(std::string(name), std::string(glsl), variant);
+    const Result result = compileCached(std::string(name), std::string(glsl), variant, KeepOnDisk::No);
     const std::string source = fmt::format("runtime/{}/{:016x}", name, std::hash<std::string_view>{}(glsl));
     Cache& c = cache();
     {

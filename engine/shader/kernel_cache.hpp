@@ -1,5 +1,5 @@
 #pragma once
-/** @file Kernels compiled in this process: see compileVariant and compileKernel. */
+/** @file Kernels compiled before, in this process or an earlier one: see compileVariant and compileKernel. */
 #include "engine/shader/glsl_compiler.hpp"
 
 #include <cstdint>
@@ -8,14 +8,18 @@
 
 namespace helio {
 
-/** The compiled text, faults included: compiled now, or before in this process from the same text, variant
- * and included files. What it returns is never freed. Thread-safe. */
+/** Whether results are kept between processes too. */
+enum class KeepOnDisk : bool { No, Yes };
+
+/** The compiled text, faults included: compiled now, or before from the same text, variant and included
+ * files. What it returns is never freed. Thread-safe. */
 std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const std::string& glsl,
-                                                  const KernelVariant& variant);
+                                                  const KernelVariant& variant, KeepOnDisk keep);
 
 struct KernelCacheStatistics {
     std::uint64_t compiled = 0;  ///< times glslang ran
-    std::uint64_t reused = 0;    ///< requests answered without
+    std::uint64_t loaded = 0;    ///< results taken from an earlier process
+    std::uint64_t reused = 0;    ///< results taken from this process
 };
 KernelCacheStatistics kernelCacheStatistics();
 

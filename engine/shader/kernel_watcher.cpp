@@ -57,7 +57,8 @@ bool KernelWatcher::poll() {
         return false;
     };
     if (!text) return failed(path + ": not found");
-    const std::shared_ptr<const CompiledGlsl> result = compileCached(path, *text, impl_->variant);
+    const std::shared_ptr<const CompiledGlsl> result =
+        compileCached(path, *text, impl_->variant, KeepOnDisk::No);
     for (const auto& [included, was] : result->includes) files[included] = was;
     if (!result->ok) return failed(result->messages);
     impl_->files = std::move(files);

@@ -39,9 +39,10 @@ struct KernelVariant {
     std::string generated;
 };
 
-/** Compiles the kernel's embedded source again under a variant (cached in the process by source and
- * variant). The empty variant gives the build's SPIR-V, word for word. Thread-safe. Throws ShaderError with
- * the compiler's messages, which name file and line. */
+/** Compiles the kernel's embedded source again under a variant (cached by source and variant, in
+ * the process and between processes in a folder beside the pipeline cache). The empty variant gives the
+ * build's SPIR-V, word for word. Thread-safe. Throws ShaderError with the compiler's messages, which name
+ * file and line. */
 Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant);
 
 /** Compiles GLSL text, called `name` in messages; `#include "shaders/..."` finds the embedded tree. Cached
