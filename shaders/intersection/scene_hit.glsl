@@ -8,6 +8,10 @@ layout(constant_id = 121) const bool USE_TREE = true;
 
 
 
+// Defines testAll() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).
+#include "generated.glsl"
+
+#ifndef UNROLLED_SCENE
 /** Tests every triangle; as traverse(). */
 void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int slot) {
     const RayShear ray = shearOf(origin, direction);
@@ -22,6 +26,7 @@ void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out i
         slot = hit ? i : slot;
     }
 }
+#endif
 
 /** Nearest triangle along the ray: its slot, -1 for none, and its distance. Returns turns of loops taken. */
 int closestHit(vec3 origin, vec3 direction, int source, out float distance, out int slot) {

@@ -62,6 +62,25 @@ bool meetsTriangle(RayShear ray, vec3 a, vec3 b, vec3 c, float nearest, out floa
     return inside && determinant != 0.0 && t > 0.0 && t < nearest;
 }
 
+/** One edge function, as in edgeFunctions(). */
+float edgeFunction(vec3 a, vec3 b) {
+    precise float e = b.x * a.y - b.y * a.x;
+    return e;
+}
+
+/** As meetsTriangle() for a flat convex quadrilateral of sheared corners in order, split along b and d;
+ * `second`: whether the half away from a is met. */
+bool meetsQuad(RayShear ray, vec3 a, vec3 b, vec3 c, vec3 d, float nearest, out float t, out bool second) {
+    const float ab = edgeFunction(a, b), bc = edgeFunction(b, c), cd = edgeFunction(c, d), da = edgeFunction(d, a);
+    const float diagonal = edgeFunction(b, d);
+    const bool positive = ab >= 0.0 && bc >= 0.0 && cd >= 0.0 && da >= 0.0;
+    const bool negative = ab <= 0.0 && bc <= 0.0 && cd <= 0.0 && da <= 0.0;
+    const float determinant = diagonal + da + ab;
+    t = (diagonal * a.z + da * b.z + ab * d.z) * ray.shear.z / determinant;
+    second = positive ? diagonal < 0.0 : diagonal > 0.0;
+    return (positive || negative) && determinant != 0.0 && t > 0.0 && t < nearest;
+}
+
 /** Barycentrics of v0, v1, v2 where the ray meets the triangle's plane; they sum to 1. */
 vec3 barycentrics(RayShear ray, vec3 v0, vec3 v1, vec3 v2) {
     const vec3 e = edgeFunctions(sheared(ray, v0), sheared(ray, v1), sheared(ray, v2));

@@ -20,6 +20,15 @@ layout(set = 0, binding = 26) uniform usamplerBuffer uLights;
 const int LIGHT_TEXELS = 6;
 const uint LIGHT_TRIANGLE = 0u, LIGHT_PARALLELOGRAM = 1u, LIGHT_POINT = 2u, LIGHT_SPOT = 3u, LIGHT_DIRECTIONAL = 4u;
 
+#include "generated.glsl"
+#ifdef UNROLLED_LIGHT
+/** The only light of the scene, written out. */
+const uvec4 ONLY_LIGHT[LIGHT_TEXELS] = UNROLLED_LIGHT;
+#define LIGHT_ROW(first, i) ONLY_LIGHT[i]
+#else
+#define LIGHT_ROW(first, i) texelFetch(uLights, first + i)
+#endif
+
 struct LightSample {
     vec3 target;        ///< end of the shadow ray: on the light, moved off it by its error bound
     bool infinite;      ///< `target` is a direction, not a point
@@ -41,12 +50,12 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
         row = scaled - float(row) < keep ? row : other;
     }
     const int first = row * LIGHT_TEXELS;
-    const vec4 corner = uintBitsToFloat(texelFetch(uLights, first));
-    const vec4 edge1 = uintBitsToFloat(texelFetch(uLights, first + 1));
-    const uvec4 edge2Bits = texelFetch(uLights, first + 2);
+    const vec4 corner = uintBitsToFloat(LIGHT_ROW(first, 0));
+    const vec4 edge1 = uintBitsToFloat(LIGHT_ROW(first, 1));
+    const uvec4 edge2Bits = LIGHT_ROW(first, 2);
     const vec3 edge2 = uintBitsToFloat(edge2Bits.xyz);
-    const vec4 strength = uintBitsToFloat(texelFetch(uLights, first + 3));
-    const vec4 facing = uintBitsToFloat(texelFetch(uLights, first + 4));
+    const vec4 strength = uintBitsToFloat(LIGHT_ROW(first, 3));
+    const vec4 facing = uintBitsToFloat(LIGHT_ROW(first, 4));
     const uint kind = edge2Bits.w;
 
     LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), 0.0);
@@ -67,7 +76,7 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
         result.density = visible ? abs(strength.w) * squared / towards : 0.0;
         result.radiance = visible ? strength.rgb / result.density : vec3(0.0);
         if (HAS_EMISSION_TEXTURES) {
-            const uvec4 identity = texelFetch(uLights, first + 5);
+            const uvec4 identity = LIGHT_ROW(first, 5);
             const int g = int(identity.x), material = int(identity.y);
             // Only whole triangles carry textures (parallelograms are merged where emission is constant).
             const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);

@@ -1,0 +1,133 @@
+#include "passes/pathtrace/unrolled_scene.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "passes/scene/packed_scene.hpp"
+
+namespace helio {
+namespace {
+
+/** A float by its bits: what the buffers hold, whatever the compiler's reading of decimals. */
+std::string literal(float value) {
+    return fmt::format("uintBitsToFloat(0x{:08x}u)", glm::floatBitsToUint(value));
+}
+
+struct Corners {
+    std::array<glm::vec3, 3> at;
+};
+
+/** Triangle pairs as a quadrilateral: first is (0, 1, 3), second (2, 3, 1). */
+struct Quad {
+    std::array<glm::vec3, 4> corner;
+};
+
+/** Whether two triangles share an edge and make a flat convex quadrilateral whose diagonal splits it into
+ * parts of comparable size. Flat: the corner across lies in the first's plane as far as floats can say. */
+bool makesQuad(const Corners& a, const Corners& b, Quad& quad) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (a.at[(i + 1) % 3] != b.at[(k + 2) % 3] || a.at[(i + 2) % 3] != b.at[(k + 1) % 3]) continue;
+            quad.corner = {a.at[i], a.at[(i + 1) % 3], b.at[k], a.at[(i + 2) % 3]};
+            std::array<glm::dvec3, 4> q;
+            glm::dvec3 size(0.0);
+            for (std::size_t c = 0; c < 4; ++c) {
+                q[c] = glm::dvec3(quad.corner[c]);
+                size = glm::max(size, glm::abs(q[c]));
+            }
+            const glm::dvec3 across = glm::cross(q[1] - q[0], q[3] - q[0]);
+            const double area = glm::length(across);
+            if (!(area > 0.0)) continue;
+            const glm::dvec3 normal = across / area;
+            if (std::abs(glm::dot(normal, q[2] - q[0])) >
+                2.0 * double(std::numeric_limits<float>::epsilon()) * glm::dot(glm::abs(normal), size))
+                continue;
+            bool convex = true;
+            for (std::size_t c = 0; c < 4; ++c) {
+                const glm::dvec3 turn = glm::cross(q[(c + 1) % 4] - q[c], q[(c + 2) % 4] - q[(c + 1) % 4]);
+                convex = convex && glm::dot(turn, normal) > 0.05 * area;
+            }
+            if (convex) return true;
+        }
+    return false;
+}
+
+struct VecLess {
+    bool operator()(const glm::vec3& a, const glm::vec3& b) const {
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    }
+};
+
+/** Names of corners, each declared when it is first used. */
+class CornerNames {
+public:
+    explicit CornerNames(std::string& text) : text_(text) {}
+    std::string operator()(const glm::vec3& p) {
+        const auto [place, isNew] = index_.try_emplace(p, index_.size());
+        if (isNew)
+            text_ += fmt::format("    const vec3 p{} = sheared(ray, vec3({}, {}, {}));\n", place->second,
+                                 literal(p.x), literal(p.y), literal(p.z));
+        return fmt::format("p{}", place->second);
+    }
+
+private:
+    std::string& text_;
+    std::map<glm::vec3, std::size_t, VecLess> index_;
+};
+
+}  // namespace
+
+std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const glm::vec4> lights) {
+    std::string text = "#define UNROLLED_SCENE\n";
+    if (lights.size() == kLightTexels) {
+        text += "#define UNROLLED_LIGHT uvec4[](";
+        for (std::size_t i = 0; i < lights.size(); ++i)
+            text += fmt::format("{}uvec4(0x{:08x}u, 0x{:08x}u, 0x{:08x}u, 0x{:08x}u)", i == 0 ? "" : ", ",
+                                glm::floatBitsToUint(lights[i].x), glm::floatBitsToUint(lights[i].y),
+                                glm::floatBitsToUint(lights[i].z), glm::floatBitsToUint(lights[i].w));
+        text += ")\n";
+    }
+    text += "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n"
+            "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int slot) {\n"
+            "    const RayShear ray = shearOf(origin, direction);\n"
+            "    slot = -1;\n"
+            "    float t;\n"
+            "    bool hit, second;\n";
+    CornerNames name(text);
+    const std::size_t count = triangles.size() / 3;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto corners = [&](std::size_t slot) {
+            return Corners{{glm::vec3(triangles[slot * 3]), glm::vec3(triangles[slot * 3 + 1]),
+                            glm::vec3(triangles[slot * 3 + 2])}};
+        };
+        Quad quad;
+        if (i + 1 < count && makesQuad(corners(i), corners(i + 1), quad)) {
+            std::array<std::string, 4> q;
+            for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
+            text += fmt::format(
+                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && source != {};\n"
+                "    nearest = hit ? t : nearest;\n"
+                "    slot = hit ? (second ? {} : {}) : slot;\n",
+                q[0], q[1], q[2], q[3], i, i + 1, i + 1, i);
+            ++i;
+        } else {
+            std::array<std::string, 3> p;
+            for (std::size_t c = 0; c < 3; ++c) p[c] = name(corners(i).at[c]);
+            text += fmt::format(
+                "    hit = meetsTriangle(ray, {}, {}, {}, nearest, t) && source != {};\n"
+                "    nearest = hit ? t : nearest;\n"
+                "    slot = hit ? {} : slot;\n",
+                p[0], p[1], p[2], i, i);
+        }
+    }
+    text += "}\n#endif\n";
+    return text;
+}
+
+}  // namespace helio
