@@ -1,6 +1,7 @@
 #include "passes/pathtrace/path_tracer.hpp"
 
 #include "passes/pathtrace/camera_frame.hpp"
+#include "passes/pathtrace/unrolled_scene.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -42,10 +43,10 @@ struct DeviceCounters {
 };
 static_assert(sizeof(DeviceCounters) == 48);
 
-constexpr std::initializer_list<std::string_view> kSurfaceBuffers = {
+const std::vector<std::string_view> kSurfaceBuffers = {
     "uTriangles", "uNodes",    "uNormals", "uTexcoords",  "uColors",
     "uMaterials", "uTextures", "uTexels8", "uTexelsFloat"};
-constexpr std::initializer_list<std::string_view> kSurfaceConstants = {
+const std::vector<std::string_view> kSurfaceConstants = {
     "HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_FLOAT_TEXTURES", "TRIANGLE_COUNT"};
 
 /** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
@@ -60,7 +61,7 @@ std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size)
 
 struct PathTracer::Impl {
     Impl(Device& device, DeviceScene& sceneIn, const Camera& camera, const glm::dmat4& transform,
-         const PathTraceOptions& optionsIn, DeviceImage& film)
+         const PathTraceOptions& optionsIn, Film& film)
         : device_(device),
           scene_(sceneIn),
           options_(optionsIn),
@@ -68,26 +69,33 @@ struct PathTracer::Impl {
           orthographic_(!camera.perspective),
           state_(device, "pathtrace.state", optionsIn.size[0] * 4, optionsIn.size[1] * 2, Format::RGBA32F),
           counters_(device, "pathtrace.counters", sizeof(DeviceCounters)) {
-        assert(film.width() == options_.size[0] * 2 && film.height() == options_.size[1] * 3);
+        assert(film.width() == options_.size[0] && film.height() == options_.size[1]);
         assert(options_.turnBudget >= 1 && options_.turnBudget <= 33000);
         const DeviceCounters zero{};
         counters_.upload(&zero, sizeof zero);
         skipped_ = scene_.info().skipped;
+        unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
+        if (unrolled_) generated_ = unrolledScene(scene_.info().triangles, scene_.info().lights);
         declareTrace(film);
     }
 
     SpecConstants constants() const {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
-        spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
-        spec["USE_TREE"] = scene_.info().nodeCount > 0;
+        if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
         spec["ORTHOGRAPHIC"] = orthographic_;
         return spec;
     }
 
-    void declareTrace(DeviceImage& film) {
+    /** The kernel as built, or with the scene written out. */
+    Kernel kernel(const Kernel& built) const {
+        if (!unrolled_) return built;
+        return compileVariant(built, {.defines = {}, .generated = generated_});
+    }
+
+    void declareTrace(Film& film) {
         Graph graph(device_);
         const Image state = graph.import(state_);
-        const Image filmImage = graph.import(film);
+        const Image filmImage = film.import(graph);
         const Buffer counters = graph.import(counters_);
         SpecConstants spec = constants();
         spec.merge(scene_.constants({"HAS_EMISSION", "HAS_EMISSION_TEXTURES", "HAS_AREA_LIGHTS",
@@ -96,8 +104,8 @@ struct PathTracer::Impl {
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
-        spec["COUNT_TURNS"] = scene_.info().nodeCount > 0;
-        graph.compute("trace", shaders::trace, {.spec = spec})
+        spec["COUNT_TURNS"] = !unrolled_;
+        graph.compute("trace", kernel(shaders::trace), {.spec = spec})
             .reads(scene_.bindings(graph, kSurfaceBuffers))
             .reads(scene_.bindings(graph, {"uLights"}))
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
@@ -142,7 +150,7 @@ struct PathTracer::Impl {
         const Image normals = graph.image("first_hit.normals", {options_.size, Format::RGBA32F});
         const Image albedos = graph.image("first_hit.albedos", {options_.size, Format::RGBA32F});
         const FirstHitParameters parameters{frame_, options_.size};
-        graph.compute("first hit", shaders::first_hit, {.spec = constants()})
+        graph.compute("first hit", kernel(shaders::first_hit), {.spec = constants()})
             .reads(scene_.bindings(graph, kSurfaceBuffers))
             .reads(scene_.bindings(graph, {"uInstanceFirst"}))
             .overwrites({{"uIds", ids}, {"uNormal", normals}, {"uAlbedo", albedos}})
@@ -173,6 +181,8 @@ struct PathTracer::Impl {
     PathTraceOptions options_;
     CameraFrame frame_;
     bool orthographic_;
+    bool unrolled_ = false;
+    std::string generated_;
     DeviceImage state_;
     DeviceBuffer counters_;
     TraceParameters parameters_{};
@@ -185,14 +195,15 @@ struct PathTracer::Impl {
 };
 
 PathTracer::PathTracer(Device& device, DeviceScene& scene, const Camera& camera,
-                       const glm::dmat4& cameraTransform, const PathTraceOptions& options, DeviceImage& film)
+                       const glm::dmat4& cameraTransform, const PathTraceOptions& options, Film& film)
     : impl_(std::make_unique<Impl>(device, scene, camera, cameraTransform, options, film)) {}
 PathTracer::~PathTracer() = default;
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
-PackOptions PathTracer::packOptions(const Scene&, const PathTraceOptions& options) {
-    return {.tree = true, .sampleSurfaces = options.nextEventEstimation};
+PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
+    return {.tree = scene.triangleCount() > kUnrolledTriangles,
+            .sampleSurfaces = options.nextEventEstimation};
 }
 
 bool PathTracer::advance(std::uint32_t sampleEnd) {

@@ -4,11 +4,12 @@
  * pixel's centre sees first.
  *
  *     DeviceScene scene(device, source, PathTracer::packOptions(options));
- *     DeviceImage film(device, "film", 2 * width, 3 * height, Format::RGBA32F);   // zeroed, see engine/film
+ *     Film film(device, width, height);   // cleared, see passes/film
  *     PathTracer tracer(device, scene, camera, placed.transform, options, film);
  *     for (std::uint32_t end = 1; end <= samples; ++end)
  *         while (!tracer.advance(end)) reportProgress(tracer.counters());
  */
+#include "passes/film/film.hpp"
 #include "passes/scene/device_scene.hpp"
 
 #include <heliograph/device.hpp>
@@ -61,10 +62,10 @@ struct FirstHits {
 /** Traces one view of one scene. The device, scene and film must outlive it. Move-only. */
 class PathTracer {
 public:
-    /** `film`: RGBA32F of twice the width and three times the height, zeroed (shaders/film/film.glsl).
+    /** `film`: of the options' size, cleared.
      * Compiles the kernels' pipelines; the driver finishes compiling at the first dispatch. */
     PathTracer(Device& device, DeviceScene& scene, const Camera& camera, const glm::dmat4& cameraTransform,
-               const PathTraceOptions& options, DeviceImage& film);
+               const PathTraceOptions& options, Film& film);
     ~PathTracer();
     PathTracer(PathTracer&&) noexcept;
     PathTracer& operator=(PathTracer&&) noexcept;

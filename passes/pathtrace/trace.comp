@@ -36,7 +36,7 @@ layout(push_constant) uniform Parameters {
 layout(set = 0, binding = 0, rgba32f) uniform image2D uState;
 
 /** Counters of all dispatches; 64 bits as two words, lower first. */
-layout(set = 0, binding = 2, std430) buffer uCounters {
+layout(set = 0, binding = 2, std430) buffer Counters {
     uint open;        ///< pixels that have not reached sampleEnd, of this dispatch
     uint unused;
     uint camera[2];
@@ -44,14 +44,14 @@ layout(set = 0, binding = 2, std430) buffer uCounters {
     uint shadow[2];
     uint cut[2];
     uint abandoned[2];  ///< rays given up in the tree
-} counters;
+} uCounters;
 
 #define COUNT(member, value)                                                     \
     {                                                                            \
         const uint total = subgroupAdd(value);                                   \
         if (subgroupElect() && total > 0u) {                                     \
-            const uint before = atomicAdd(counters.member[0], total);            \
-            if (before + total < before) atomicAdd(counters.member[1], 1u);      \
+            const uint before = atomicAdd(uCounters.member[0], total);            \
+            if (before + total < before) atomicAdd(uCounters.member[1], 1u);      \
         }                                                                        \
     }
 
@@ -147,7 +147,7 @@ void main() {
         }
     }
     const uint unfinished = subgroupAdd(inside && !finished ? 1u : 0u);
-    if (subgroupElect() && unfinished > 0u) atomicAdd(counters.open, unfinished);
+    if (subgroupElect() && unfinished > 0u) atomicAdd(uCounters.open, unfinished);
     COUNT(camera, cameraRays)
     COUNT(bounce, bounceRays)
     COUNT(shadow, shadowRays)

@@ -1,15 +1,15 @@
 #include "passes/pathtrace/unrolled_scene.hpp"
 
+#include "passes/scene/packed_scene.hpp"
+
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <vector>
-
-#include <fmt/format.h>
-
-#include "passes/scene/packed_scene.hpp"
 
 namespace helio {
 namespace {
@@ -93,12 +93,13 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
                                 glm::floatBitsToUint(lights[i].z), glm::floatBitsToUint(lights[i].w));
         text += ")\n";
     }
-    text += "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n"
-            "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int slot) {\n"
-            "    const RayShear ray = shearOf(origin, direction);\n"
-            "    slot = -1;\n"
-            "    float t;\n"
-            "    bool hit, second;\n";
+    text +=
+        "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n"
+        "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int slot) {\n"
+        "    const RayShear ray = shearOf(origin, direction);\n"
+        "    slot = -1;\n"
+        "    float t;\n"
+        "    bool hit, second;\n";
     CornerNames name(text);
     const std::size_t count = triangles.size() / 3;
     for (std::size_t i = 0; i < count; ++i) {
@@ -111,7 +112,8 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
             std::array<std::string, 4> q;
             for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
             text += fmt::format(
-                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && source != {};\n"
+                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && source != "
+                "{};\n"
                 "    nearest = hit ? t : nearest;\n"
                 "    slot = hit ? (second ? {} : {}) : slot;\n",
                 q[0], q[1], q[2], q[3], i, i + 1, i + 1, i);

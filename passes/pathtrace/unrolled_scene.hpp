@@ -4,10 +4,10 @@
  * moved and sheared once, and pairs that make a flat convex quadrilateral are tested as one. On lavapipe this
  * takes a fraction of the time of any loop over a buffer, where each load costs as much as the test.
  */
+#include <glm/glm.hpp>
+
 #include <span>
 #include <string>
-
-#include <glm/glm.hpp>
 
 namespace helio {
 

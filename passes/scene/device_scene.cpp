@@ -27,7 +27,9 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
         using T = typename std::decay_t<decltype(values)>::value_type;
         if (values.empty()) values.assign(std::max<std::size_t>(1, 16 / sizeof(T)), T{});
         buffers_.push_back({name, view, makeBuffer(device, fmt::format("scene.{}", name), values)});
-        std::decay_t<decltype(values)>().swap(values);  // the host's copy is not needed any more
+        // The host's copy is not needed any more, but where few triangles are written out as code.
+        constexpr std::size_t kept = std::size_t(64) << 10;
+        if (values.size() * sizeof(T) > kept) std::decay_t<decltype(values)>().swap(values);
     };
     upload("uTriangles", info_.triangles, Format::Undefined);
     upload("uNodes", info_.nodes, Format::Undefined);
@@ -43,7 +45,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uInstanceFirst", info_.instanceFirst, Format::R32UI);
 }
 
-std::vector<Binding> DeviceScene::bindings(Graph& graph, std::initializer_list<std::string_view> names) {
+std::vector<Binding> DeviceScene::bindings(Graph& graph, const std::vector<std::string_view>& names) {
     std::vector<Binding> result;
     for (std::string_view name : names) {
         const auto found = std::ranges::find(buffers_, name, &Named::name);
@@ -53,7 +55,7 @@ std::vector<Binding> DeviceScene::bindings(Graph& graph, std::initializer_list<s
     return result;
 }
 
-SpecConstants DeviceScene::constants(std::initializer_list<std::string_view> names) const {
+SpecConstants DeviceScene::constants(const std::vector<std::string_view>& names) const {
     SpecConstants result;
     for (std::string_view name : names) {
         const auto found = constants_.find(std::string(name));

@@ -7,7 +7,6 @@
 #include <heliograph/graph.hpp>
 #include <heliograph/scene.hpp>
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,10 +22,10 @@ public:
     DeviceScene(Device& device, const Scene& scene, const PackOptions& options = {});
 
     /** Imports the named buffers into a graph and returns read bindings for them, to hand to Pass::reads. */
-    std::vector<Binding> bindings(Graph& graph, std::initializer_list<std::string_view> names);
+    std::vector<Binding> bindings(Graph& graph, const std::vector<std::string_view>& names);
 
     /** The named specialization constants of shaders/scene/features.glsl, with this scene's values. */
-    SpecConstants constants(std::initializer_list<std::string_view> names) const;
+    SpecConstants constants(const std::vector<std::string_view>& names) const;
 
     /** What was packed, without the arrays (they are on the device) but for `textures`. */
     const PackedScene& info() const { return info_; }
