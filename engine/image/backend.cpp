@@ -39,6 +39,27 @@ const ImageBackend& loadBackend() {
     return *backend();
 }
 
+std::uint32_t bigEndian32(const std::byte* bytes) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < 4; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[i]);
+    return value;
+}
+
+/** The checksum of PNG (ISO 15948, annex D). */
+std::uint32_t crc32(std::span<const std::byte> bytes) {
+    static const std::array<std::uint32_t, 256> table = [] {
+        std::array<std::uint32_t, 256> values{};
+        for (std::uint32_t n = 0; n < 256; ++n) {
+            values[n] = n;
+            for (int k = 0; k < 8; ++k) values[n] = (values[n] & 1 ? 0xedb88320u : 0u) ^ values[n] >> 1;
+        }
+        return values;
+    }();
+    std::uint32_t crc = 0xffffffffu;
+    for (std::byte byte : bytes) crc = table[(crc ^ std::to_integer<std::uint32_t>(byte)) & 0xff] ^ crc >> 8;
+    return ~crc;
+}
+
 bool startsWith(std::span<const std::byte> file, std::span<const unsigned char> magic) {
     return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
 }
@@ -50,22 +71,22 @@ const ImageBackend& imageBackend() {
     return backend;
 }
 
-bool isCutPng(std::span<const std::byte> file) {
-    if (!startsWith(file, pngMagic)) return false;
+std::string pngFault(std::span<const std::byte> file) {
+    if (!startsWith(file, pngMagic)) return {};
     std::size_t at = pngMagic.size();
-    while (file.size() - at >= 12) {  // a chunk: length, name, data, checksum
-        std::uint64_t length = 0;
-        for (std::size_t i = 0; i < 4; ++i)
-            length = length << 8 | std::to_integer<std::uint64_t>(file[at + i]);
-        if (length + 12 > file.size() - at) return true;
-        if (std::memcmp(&file[at + 4], "IEND", 4) == 0) return false;
+    while (file.size() - at >= 12) {  // a chunk: length, name, data, checksum of name and data
+        const std::uint64_t length = bigEndian32(&file[at]);
+        if (length + 12 > file.size() - at) break;
+        if (crc32(file.subspan(at + 4, length + 4)) != bigEndian32(&file[at + 8 + length]))
+            return "is damaged";
+        if (std::memcmp(&file[at + 4], "IEND", 4) == 0) return {};
         at += length + 12;
     }
-    return true;
+    return "is cut off";
 }
 
 std::string decodeImage(std::span<const std::byte> file, DecodedImage& image) {
-    if (isCutPng(file)) return "is cut off";
+    if (std::string fault = pngFault(file); !fault.empty()) return fault;
     if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", image);
     if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", image);
     return "is neither PNG nor JPEG";

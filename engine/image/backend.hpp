@@ -45,9 +45,9 @@ public:
  * another version. */
 const ImageBackend& imageBackend();
 
-/** Whether the file is a PNG that is cut off. Checked first, since libpng reports that on standard error by
- * itself. */
-bool isCutPng(std::span<const std::byte> file);
+/** What is wrong with a PNG's chunks: cut off, or a checksum that does not hold; empty for none, and for
+ * other files. Asked first, since libpng reports such faults on standard error by itself. */
+std::string pngFault(std::span<const std::byte> file);
 
 /** Decodes an image file held in memory, PNG or JPEG by its first bytes. Returns the fault, empty for
  * success. */

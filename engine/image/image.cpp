@@ -60,7 +60,8 @@ int ImageF::channel(std::string_view name) const {
 
 ImageF loadImage(const std::filesystem::path& file) {
     ImageF image;
-    const std::string fault = isCutPng(readFile(file)) ? "is cut off" : imageBackend().read(file, image);
+    std::string fault = pngFault(readFile(file));
+    if (fault.empty()) fault = imageBackend().read(file, image);
     if (!fault.empty())
         throw InputError(file.string(), "", fault, "give a whole image file of a known format");
     return image;

@@ -1,3 +1,4 @@
+#include "engine/scene/gltf/gltf.hpp"
 #include "engine/scene/samples/sample.hpp"
 
 #include <heliograph/error.hpp>
@@ -12,7 +13,11 @@ namespace helio {
 Scene load(const std::string& source) {
     constexpr std::string_view samplePrefix = "sample:";
     if (source.starts_with(samplePrefix)) return makeSample(source.substr(samplePrefix.size()));
-    throw InputError(source, "", "is no scene that can be read", "give sample:NAME");
+    std::string extension = std::filesystem::path(source).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (extension == ".gltf" || extension == ".glb") return loadGltf(source);
+    throw InputError(source, "", "is no scene that can be read", "give a .gltf or .glb file, or sample:NAME");
 }
 
 }  // namespace helio

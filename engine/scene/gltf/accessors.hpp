@@ -1,0 +1,48 @@
+#pragma once
+/** @file The numbers in a glTF file's buffers. */
+#include "engine/scene/gltf/container.hpp"
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace helio::gltf {
+
+/** A document on its way to a Scene: container, typed model, buffers in memory. */
+class Asset {
+public:
+    /** Takes a container whose schema is checked. Loads the buffers. Throws InputError. */
+    explicit Asset(Container container);
+
+    const std::string& file() const { return container_.file; }
+    const nlohmann::json& document() const { return container_.document; }
+    const tinygltf::Model& model() const { return model_; }
+    std::filesystem::path folder() const;
+
+    /** The bytes of a buffer view; checked against its buffer. */
+    std::span<const std::byte> bufferView(int index) const;
+
+    /** An accessor's numbers as floats, `components` per element: integers as they are, or scaled to 0..1 or
+     * -1..1 where normalized. Every number is finite. `place` and the types' names are for messages. */
+    std::vector<float> floats(int accessor, int components, const std::string& place) const;
+    /** An accessor of unsigned integers. */
+    std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;
+    std::size_t count(int accessor) const { return model_.accessors[std::size_t(accessor)].count; }
+
+private:
+    struct Layout;
+    /** Where an accessor's elements lie, all within their buffers. */
+    Layout layout(int accessor) const;
+    template <class Store>
+    void read(int accessor, const Layout& layout, Store&& store) const;
+
+    Container container_;
+    tinygltf::Model model_;
+    std::vector<std::vector<std::byte>> buffers_;
+};
+
+}  // namespace helio::gltf

@@ -1,0 +1,51 @@
+#pragma once
+/** @file The parts of a glTF asset turned into parts of a Scene. */
+#include "engine/scene/gltf/accessors.hpp"
+
+#include <heliograph/scene.hpp>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace helio::gltf {
+
+/** Extensions whose meaning the scene model holds, in alphabetical order. */
+bool isSupported(const std::string& extension);
+
+/** Notes in Scene::skipped or Scene::warnings, each once. */
+void skip(helio::Scene& scene, const std::string& what, const std::string& why);
+void warn(helio::Scene& scene, const std::string& message);
+
+/** Fills Scene::meshes. */
+void buildMeshes(const Asset& asset, helio::Scene& scene);
+
+/** Fills Scene::materials, textures and images: the materials in `used` with their textures, the others
+ * without. */
+void buildMaterials(const Asset& asset, const std::set<int>& used, helio::Scene& scene);
+
+/** Fills Scene::nodes, roots, cameras and lights. Refuses cycles and nodes with two parents. */
+void buildNodes(const Asset& asset, helio::Scene& scene);
+
+/** Decodes images for textures: each distinct content once. */
+class ImageLoader {
+public:
+    explicit ImageLoader(const Asset& asset) : asset_(asset) {}
+    /** The scene's image for an index into the asset's images. Reads it; decoding waits for decodeAll. */
+    int use(int image);
+    /** Decodes what was used, side by side, into Scene::images. */
+    void decodeAll(helio::Scene& scene);
+
+private:
+    struct Source {
+        int image;  ///< into the asset's images, for messages
+        std::string name;
+        std::vector<std::byte> owned;
+        std::span<const std::byte> bytes;
+    };
+    const Asset& asset_;
+    std::vector<int> known_;  ///< per image of the asset: into sources_, -1 for not used yet
+    std::vector<Source> sources_;
+};
+
+}  // namespace helio::gltf

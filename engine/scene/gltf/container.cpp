@@ -1,0 +1,113 @@
+#include "engine/scene/gltf/container.hpp"
+
+#include "engine/image/read_file.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+
+namespace helio::gltf {
+namespace {
+
+constexpr int maximumNesting = 100;
+
+/** Parsers of JSON, and what walks the result, recurse; a deep file must not overflow their stack. */
+void checkNesting(const std::string& file, std::string_view text) {
+    int depth = 0;
+    bool isInString = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (isInString) {
+            if (c == '\\') ++i;
+            if (c == '"') isInString = false;
+        } else if (c == '"') {
+            isInString = true;
+        } else if (c == '{' || c == '[') {
+            if (++depth > maximumNesting) {
+                throw InputError(file, fmt::format("byte {}", i), "its JSON is nested too deeply",
+                                 fmt::format("nest at most {} levels", maximumNesting));
+            }
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+}
+
+nlohmann::json parse(const std::string& file, std::string_view text) {
+    checkNesting(file, text);
+    try {
+        return nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::size_t byte = std::min(error.byte, text.size());
+        const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(byte), '\n');
+        throw InputError(file, fmt::format("line {}", lines + 1), "is no valid JSON",
+                         "write the file again; it may be cut off");
+    } catch (const nlohmann::json::exception&) {  // a number beyond double's range
+        throw InputError(file, "", "its JSON has a number that is out of range", "write the file again");
+    }
+}
+
+std::uint32_t littleEndian32(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    return value;
+}
+
+/** A GLB's header is magic, version, length; then chunks of length, type, data: JSON first, BIN second. */
+void parseBinary(Container& container) {
+    constexpr std::uint32_t jsonChunk = 0x4E4F534A, binChunk = 0x004E4942;
+    const std::span<const std::byte> bytes(container.bytes);
+    const auto fail = [&](const char* place, std::string fault) {
+        throw InputError(container.file, place, std::move(fault), "write the GLB again; it may be cut off");
+    };
+    if (bytes.size() < 20)
+        fail("header", fmt::format("has {} bytes, fewer than a GLB's smallest", bytes.size()));
+    if (const auto version = littleEndian32(bytes, 4); version != 2) {
+        throw InputError(container.file, "header", fmt::format("is of GLB version {}", version),
+                         "give version 2");
+    }
+    const std::size_t length = littleEndian32(bytes, 8);
+    if (length > bytes.size() || length < 20) {
+        fail("header", fmt::format("says {} bytes, the file has {}", length, bytes.size()));
+    }
+    std::size_t at = 12;
+    for (int index = 0; length - at >= 8; ++index) {
+        const std::size_t size = littleEndian32(bytes, at);
+        const std::uint32_t type = littleEndian32(bytes, at + 4);
+        at += 8;
+        if (size > length - at) fail(index == 0 ? "JSON chunk" : "BIN chunk", "is longer than the file");
+        const auto content = bytes.subspan(at, size);
+        if (index == 0) {
+            if (type != jsonChunk) fail("first chunk", "is no JSON chunk");
+            container.document =
+                parse(container.file, {reinterpret_cast<const char*>(content.data()), content.size()});
+        } else if (index == 1 && type == binChunk) {
+            container.binaryChunk = content;
+            container.hasBinaryChunk = true;
+        }
+        at += size;
+    }
+}
+
+}  // namespace
+
+Container readContainer(const std::string& file) {
+    Container container;
+    container.file = file;
+    container.bytes = readFile(file);
+    const std::string_view text(reinterpret_cast<const char*>(container.bytes.data()),
+                                container.bytes.size());
+    if (text.starts_with("glTF")) {
+        parseBinary(container);
+    } else {
+        container.document = parse(file, text);
+        container.bytes = {};
+    }
+    return container;
+}
+
+}  // namespace helio::gltf

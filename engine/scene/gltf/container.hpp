@@ -1,0 +1,24 @@
+#pragma once
+/** @file The outermost layer of a glTF file: bytes to JSON document and binary chunk. */
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace helio::gltf {
+
+/** A file with its JSON parsed but not yet looked at. */
+struct Container {
+    std::string file;  ///< as the user gave it, for messages
+    std::vector<std::byte> bytes;
+    std::span<const std::byte> binaryChunk;  ///< of a GLB, into bytes
+    bool hasBinaryChunk = false;
+    nlohmann::json document;
+};
+
+/** Reads a file; GLB by its first bytes, whatever it is called. Throws InputError. */
+Container readContainer(const std::string& file);
+
+}  // namespace helio::gltf

@@ -1,0 +1,89 @@
+#include "engine/scene/gltf/gltf.hpp"
+
+#include "engine/scene/gltf/build.hpp"
+#include "engine/scene/gltf/schema.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <string_view>
+
+namespace helio {
+namespace gltf {
+
+bool isSupported(const std::string& extension) {
+    constexpr std::array<std::string_view, 7> supported{
+        "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+        "KHR_materials_ior",     "KHR_materials_specular",
+        "KHR_materials_unlit",   "KHR_mesh_quantization",
+        "KHR_texture_transform",
+    };
+    return std::find(supported.begin(), supported.end(), extension) != supported.end();
+}
+
+void skip(helio::Scene& scene, const std::string& what, const std::string& why) {
+    const std::pair<std::string, std::string> entry{what, why};
+    if (std::find(scene.skipped.begin(), scene.skipped.end(), entry) == scene.skipped.end()) {
+        scene.skipped.push_back(entry);
+    }
+}
+
+void warn(helio::Scene& scene, const std::string& message) {
+    constexpr std::size_t enough = 100;  // a file may have a fault in each of a million places
+    if (scene.warnings.size() < enough) scene.warnings.push_back(message);
+}
+
+namespace {
+
+void checkExtensions(const Container& container, helio::Scene& scene) {
+    const nlohmann::json none = nlohmann::json::array();
+    for (const auto& extension : container.document.value("extensionsRequired", none)) {
+        const auto& name = extension.get_ref<const std::string&>();
+        if (!isSupported(name)) {
+            throw InputError(container.file, "extensionsRequired", name + " is not supported",
+                             "export the file without " + name);
+        }
+    }
+    for (const auto& extension : container.document.value("extensionsUsed", none)) {
+        const auto& name = extension.get_ref<const std::string&>();
+        if (!isSupported(name)) skip(scene, name, "is not supported");
+    }
+    const auto has = [&](const char* member) {
+        const auto found = container.document.find(member);
+        return found != container.document.end() && !found->empty();
+    };
+    if (has("skins")) skip(scene, "skins", "are not evaluated; meshes stand as they are modelled");
+    if (has("animations")) skip(scene, "animations", "are not evaluated");
+}
+
+std::set<int> usedMaterials(const helio::Scene& scene) {
+    std::set<int> used;
+    for (const Instance& instance : scene.instances()) {
+        for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
+            used.insert(primitive.material);
+        }
+    }
+    return used;
+}
+
+}  // namespace
+}  // namespace gltf
+
+Scene loadGltf(const std::string& file) try {
+    Scene scene;
+    scene.name = file;
+    gltf::Container container = gltf::readContainer(file);
+    gltf::checkSchema(file, container.document);
+    gltf::checkExtensions(container, scene);
+    const gltf::Asset asset(std::move(container));
+    gltf::buildMeshes(asset, scene);
+    gltf::buildNodes(asset, scene);
+    gltf::buildMaterials(asset, gltf::usedMaterials(scene), scene);
+    return scene;
+} catch (const std::bad_alloc&) {
+    throw InputError(file, "", "does not fit in memory", "give a smaller file");
+}
+
+}  // namespace helio

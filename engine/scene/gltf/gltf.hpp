@@ -1,0 +1,24 @@
+#pragma once
+/** @file
+ * glTF 2.0 and GLB import, in steps that each refuse what the next could not bear:
+ * container (file, chunks, JSON text), schema (types, ranges, every index), tinygltf (typed model), buffers
+ * and accessors (sizes, offsets), then meshes, materials, images, nodes.
+ */
+#include <heliograph/scene.hpp>
+
+#include <string>
+
+namespace helio {
+
+/**
+ * Loads a .gltf or .glb file. Throws InputError with the file and the place in it, e.g. "accessors[3].count".
+ * Read: meshes (all index and component types, sparse, strips, fans), nodes, cameras, metallic-roughness
+ * materials, textures (PNG, JPEG; from files inside the file's folder, data URIs, buffer views),
+ * KHR_lights_punctual, KHR_materials_emissive_strength, _ior, _specular, _unlit, KHR_mesh_quantization,
+ * KHR_texture_transform. Everything else that the file has is named in Scene::skipped or
+ * Material::unsupported; refused if it is required. Images are decoded once each, and only those that a
+ * material of the shown scene uses; other materials come without their textures.
+ */
+Scene loadGltf(const std::string& file);
+
+}  // namespace helio

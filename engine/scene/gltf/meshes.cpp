@@ -1,0 +1,208 @@
+#include "engine/scene/gltf/build.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace helio::gltf {
+namespace {
+
+/** Primitives may share an accessor, so that a small file unfolds to any size. */
+constexpr std::size_t maximumVertices = std::size_t(1) << 28;
+
+template <class Vector>
+std::vector<Vector> vectors(const std::vector<float>& values) {
+    constexpr auto length = std::size_t(Vector::length());
+    std::vector<Vector> result(values.size() / length);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[i * length + c];
+    }
+    return result;
+}
+
+/** glTF 2.0, section 3.7.2.1: three indices per triangle of a list, strip or fan. */
+std::vector<std::uint32_t> triangles(const std::vector<std::uint32_t>& v, int mode) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) return v;
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i + 2 < v.size(); ++i) {
+        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+            result.insert(result.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
+        } else {
+            result.insert(result.end(), {v[i + 1], v[i + 2], v[0]});
+        }
+    }
+    return result;
+}
+
+/** Unit normals; where the file has a zero, the area-weighted mean of the triangles around. */
+void fixNormals(Primitive& primitive) {
+    std::vector<glm::dvec3> mean;
+    for (std::size_t i = 0; i < primitive.normals.size(); ++i) {
+        const glm::dvec3 normal = primitive.normals[i];
+        double length = glm::length(normal);
+        if (length > 1e-20) {
+            primitive.normals[i] = normal / length;
+            continue;
+        }
+        if (mean.empty()) {
+            mean.resize(primitive.positions.size());
+            for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+                const std::uint32_t* const corner = &primitive.indices[t];
+                const glm::dvec3 a = primitive.positions[corner[0]];
+                const glm::dvec3 area = glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a,
+                                                   glm::dvec3(primitive.positions[corner[2]]) - a);
+                for (int k = 0; k < 3; ++k) mean[corner[k]] += area;
+            }
+        }
+        length = glm::length(mean[i]);
+        primitive.normals[i] = length > 0 ? glm::vec3(mean[i] / length) : glm::vec3(0, 0, 1);
+    }
+}
+
+/** Unit tangents with a sign of 1 or -1; a zero becomes any direction across the normal. */
+void fixTangents(Primitive& primitive) {
+    for (std::size_t i = 0; i < primitive.tangents.size(); ++i) {
+        glm::dvec3 tangent(primitive.tangents[i]);
+        if (!(glm::length(tangent) > 1e-20)) {
+            const glm::dvec3 normal = primitive.normals.empty() ? glm::vec3(0, 0, 1) : primitive.normals[i];
+            tangent =
+                glm::cross(normal, std::abs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
+        }
+        primitive.tangents[i] =
+            glm::vec4(glm::vec3(glm::normalize(tangent)), primitive.tangents[i].w < 0 ? -1 : 1);
+    }
+}
+
+class PrimitiveBuilder {
+public:
+    PrimitiveBuilder(const Asset& asset, helio::Scene& scene, std::string place, std::size_t& vertices)
+        : asset_(asset), scene_(scene), place_(std::move(place)), vertices_(vertices) {}
+
+    Primitive build(const tinygltf::Primitive& from) {
+        Primitive primitive;
+        primitive.material = from.material;
+        const auto position = from.attributes.find("POSITION");
+        if (position == from.attributes.end()) {
+            skip(scene_, place_, "it has no POSITION");
+            return primitive;
+        }
+        size_ = asset_.count(position->second);
+        primitive.positions = vectors<glm::vec3>(attribute("POSITION", position->second, 3));
+        vertices_ += size_;
+        if (vertices_ > maximumVertices) {
+            throw InputError(asset_.file(), place_, "brings the file's vertices above 2^28",
+                             "split the file");
+        }
+        readAttributes(from, primitive);
+        readIndices(from, primitive);
+        fixNormals(primitive);
+        fixTangents(primitive);
+        return primitive;
+    }
+
+private:
+    std::vector<float> attribute(const std::string& name, int accessor, int components) const {
+        const std::string place = place_ + ".attributes." + name;
+        if (asset_.count(accessor) != size_) {
+            throw InputError(asset_.file(), place,
+                             fmt::format("has {} elements, POSITION {}", asset_.count(accessor), size_),
+                             "give every attribute one element per vertex");
+        }
+        return asset_.floats(accessor, components, place);
+    }
+
+    void readAttributes(const tinygltf::Primitive& from, Primitive& primitive) {
+        for (const auto& [name, accessor] : from.attributes) {
+            if (name == "POSITION") continue;
+            if (name == "NORMAL") {
+                primitive.normals = vectors<glm::vec3>(attribute(name, accessor, 3));
+            } else if (name == "TANGENT") {
+                primitive.tangents = vectors<glm::vec4>(attribute(name, accessor, 4));
+            } else if (name == "COLOR_0") {
+                readColors(accessor, primitive);
+            } else if (!name.starts_with("TEXCOORD_") && !name.starts_with("_")) {
+                skip(scene_, "attribute " + name,
+                     name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
+                         ? "skins are not evaluated"
+                         : "the scene model has no place for it");
+            }
+        }
+        for (int set = 0;; ++set) {
+            const std::string name = fmt::format("TEXCOORD_{}", set);
+            const auto found = from.attributes.find(name);
+            if (found == from.attributes.end()) break;
+            primitive.texcoords.push_back(vectors<glm::vec2>(attribute(name, found->second, 2)));
+        }
+    }
+
+    void readColors(int accessor, Primitive& primitive) const {
+        if (asset_.model().accessors[std::size_t(accessor)].type == TINYGLTF_TYPE_VEC4) {
+            primitive.colors = vectors<glm::vec4>(attribute("COLOR_0", accessor, 4));
+            return;
+        }
+        for (const glm::vec3& color : vectors<glm::vec3>(attribute("COLOR_0", accessor, 3))) {
+            primitive.colors.emplace_back(color, 1.0f);
+        }
+    }
+
+    void readIndices(const tinygltf::Primitive& from, Primitive& primitive) {
+        std::vector<std::uint32_t> indices;
+        const std::string place = place_ + ".indices";
+        if (from.indices >= 0) {
+            indices = asset_.indices(from.indices, place);
+            const auto wrong = std::find_if(indices.begin(), indices.end(),
+                                            [this](std::uint32_t index) { return index >= size_; });
+            if (wrong != indices.end()) {
+                throw InputError(asset_.file(), place,
+                                 fmt::format("element {} is {}, the primitive has {} vertices",
+                                             wrong - indices.begin(), *wrong, size_),
+                                 "keep indices below the number of vertices");
+            }
+        } else {
+            indices.resize(size_);
+            for (std::size_t i = 0; i < size_; ++i) indices[i] = std::uint32_t(i);
+        }
+        if (from.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
+            warn(scene_, fmt::format("{}: {} indices are no whole triangles; the last are left out", place_,
+                                     indices.size()));
+            indices.resize(indices.size() / 3 * 3);
+        }
+        primitive.indices = triangles(indices, from.mode);
+    }
+
+    const Asset& asset_;
+    helio::Scene& scene_;
+    std::string place_;
+    std::size_t& vertices_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace
+
+void buildMeshes(const Asset& asset, helio::Scene& scene) {
+    std::size_t vertices = 0;
+    for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
+        const tinygltf::Mesh& from = asset.model().meshes[m];
+        Mesh mesh;
+        mesh.name = from.name;
+        for (std::size_t p = 0; p < from.primitives.size(); ++p) {
+            const tinygltf::Primitive& primitive = from.primitives[p];
+            const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
+            if (!primitive.targets.empty()) skip(scene, "morph targets", "the unmorphed mesh is shown");
+            if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+                skip(scene, primitive.mode == TINYGLTF_MODE_POINTS ? "points" : "lines",
+                     "only triangles are shown");
+                continue;
+            }
+            for (const auto& [name, value] : primitive.extensions) skip(scene, name, "is not supported");
+            Primitive built = PrimitiveBuilder(asset, scene, place, vertices).build(primitive);
+            if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
+        }
+        scene.meshes.push_back(std::move(mesh));
+    }
+}
+
+}  // namespace helio::gltf

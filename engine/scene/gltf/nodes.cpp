@@ -1,0 +1,177 @@
+#include "engine/scene/gltf/build.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace helio::gltf {
+namespace {
+
+void buildCameras(const Asset& asset, helio::Scene& scene) {
+    int index = 0;
+    for (const tinygltf::Camera& from : asset.model().cameras) {
+        Camera camera;
+        camera.name = from.name;
+        camera.perspective = from.type == "perspective";
+        const double zfar = camera.perspective ? from.perspective.zfar : from.orthographic.zfar;
+        const double znear = camera.perspective ? from.perspective.znear : from.orthographic.znear;
+        if (zfar > 0 && !(zfar > znear)) {
+            throw InputError(asset.file(), fmt::format("cameras[{}]", index), "has zfar before znear",
+                             "give a zfar above znear");
+        }
+        if (camera.perspective) {
+            camera.yfov = float(from.perspective.yfov);
+            camera.aspectRatio = float(from.perspective.aspectRatio);
+        } else {
+            camera.ymag = float(from.orthographic.ymag);
+            camera.aspectRatio = float(std::abs(from.orthographic.xmag) / from.orthographic.ymag);
+        }
+        camera.znear = float(znear);
+        if (zfar > 0) camera.zfar = float(zfar);
+        scene.cameras.push_back(camera);
+        ++index;
+    }
+}
+
+/** KHR_lights_punctual. Candela and lux are taken as W/sr and W/m^2 (the contract's radiometry). */
+void buildLights(const Asset& asset, helio::Scene& scene) {
+    const nlohmann::json& document = asset.document();
+    const nlohmann::json::json_pointer path("/extensions/KHR_lights_punctual/lights");
+    if (!document.contains(path)) return;
+    for (const nlohmann::json& from : document[path]) {
+        PunctualLight light;
+        light.name = from.value("name", "");
+        const auto& type = from["type"].get_ref<const std::string&>();
+        if (type == "spot") light.type = PunctualLight::Type::Spot;
+        if (type == "directional") light.type = PunctualLight::Type::Directional;
+        if (from.contains("color")) {
+            for (int c = 0; c < 3; ++c) light.intensity[c] = from["color"][std::size_t(c)].get<float>();
+        }
+        light.intensity *= from.value("intensity", 1.0f);
+        light.range = from.value("range", 0.0f);
+        if (from.contains("spot")) {
+            light.innerConeAngle = from["spot"].value("innerConeAngle", light.innerConeAngle);
+            light.outerConeAngle = from["spot"].value("outerConeAngle", light.outerConeAngle);
+        }
+        if (light.type == PunctualLight::Type::Spot && !(light.innerConeAngle < light.outerConeAngle)) {
+            throw InputError(
+                asset.file(),
+                fmt::format("extensions.KHR_lights_punctual.lights[{}].spot", scene.lights.size()),
+                "has its inner cone outside its outer cone", "give innerConeAngle < outerConeAngle");
+        }
+        scene.lights.push_back(light);
+    }
+}
+
+glm::mat4 matrixOf(const Asset& asset, const std::vector<double>& values, std::size_t node) {
+    glm::mat4 matrix;
+    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = float(values[i]);
+    const glm::vec4 last(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
+    if (last != glm::vec4(0, 0, 0, 1)) {
+        throw InputError(asset.file(), fmt::format("nodes[{}].matrix", node), "is not affine",
+                         "give column-major numbers whose 4th row is 0 0 0 1");
+    }
+    return matrix;
+}
+
+glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std::size_t node) {
+    const glm::dquat q(values[3], values[0], values[1], values[2]);
+    const double length = glm::length(q);
+    if (!(length > 1e-6)) {
+        throw InputError(asset.file(), fmt::format("nodes[{}].rotation", node), "is no unit quaternion",
+                         "give x, y, z, w of length 1");
+    }
+    return glm::quat(q / length);
+}
+
+Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, helio::Scene& scene) {
+    const auto vectorOf = [](const std::vector<double>& v) { return glm::vec3(v[0], v[1], v[2]); };
+    Node node;
+    node.name = from.name;
+    node.children = from.children;
+    if (from.matrix.size() == 16) node.matrix = matrixOf(asset, from.matrix, index);
+    if (from.translation.size() == 3) node.translation = vectorOf(from.translation);
+    if (from.rotation.size() == 4) node.rotation = rotationOf(asset, from.rotation, index);
+    if (from.scale.size() == 3) node.scale = vectorOf(from.scale);
+    node.mesh = from.mesh;
+    node.camera = from.camera;
+    for (const auto& [name, value] : from.extensions) {
+        if (name == "KHR_lights_punctual") {
+            node.light = value.Get("light").GetNumberAsInt();
+        } else {
+            skip(scene, name, "is not supported");
+        }
+    }
+    return node;
+}
+
+/** Every node's parent, -1 for a root. Refuses a second parent and, with that, finds every cycle as nodes
+ * that no root leads to. */
+std::vector<int> parents(const Asset& asset, const helio::Scene& scene) {
+    std::vector<int> parent(scene.nodes.size(), -1);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        for (int child : scene.nodes[i].children) {
+            if (parent[std::size_t(child)] >= 0 || child == int(i)) {
+                throw InputError(asset.file(), fmt::format("nodes[{}]", child),
+                                 child == int(i) ? "is its own child" : "has two parents",
+                                 "nodes must form trees");
+            }
+            parent[std::size_t(child)] = int(i);
+        }
+    }
+    std::vector<int> reached;
+    for (std::size_t i = 0; i < parent.size(); ++i) {
+        if (parent[i] < 0) reached.push_back(int(i));
+    }
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+        const auto& children = scene.nodes[std::size_t(reached[i])].children;
+        reached.insert(reached.end(), children.begin(), children.end());
+    }
+    if (reached.size() < parent.size()) {
+        std::vector<bool> isReached(parent.size(), false);
+        for (int node : reached) isReached[std::size_t(node)] = true;
+        const auto first = std::find(isReached.begin(), isReached.end(), false) - isReached.begin();
+        throw InputError(asset.file(), fmt::format("nodes[{}]", first), "is in a cycle",
+                         "nodes must form trees");
+    }
+    return parent;
+}
+
+}  // namespace
+
+void buildNodes(const Asset& asset, helio::Scene& scene) {
+    buildCameras(asset, scene);
+    buildLights(asset, scene);
+    const tinygltf::Model& model = asset.model();
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        scene.nodes.push_back(nodeOf(asset, model.nodes[i], i, scene));
+    }
+    const std::vector<int> parent = parents(asset, scene);
+    if (model.scenes.empty()) {
+        for (std::size_t i = 0; i < parent.size(); ++i) {
+            if (parent[i] < 0) scene.roots.push_back(int(i));
+        }
+        return;
+    }
+    const auto shown = std::size_t(std::max(model.defaultScene, 0));
+    if (model.scenes.size() > 1) {
+        skip(scene, fmt::format("{} further scenes", model.scenes.size() - 1),
+             fmt::format("scene {} is shown", shown));
+    }
+    scene.roots = model.scenes[shown].nodes;
+    for (std::size_t i = 0; i < scene.roots.size(); ++i) {
+        const int root = scene.roots[i];
+        const bool isTwice =
+            std::count(scene.roots.begin(), scene.roots.begin() + std::ptrdiff_t(i), root) > 0;
+        if (parent[std::size_t(root)] >= 0 || isTwice) {
+            throw InputError(asset.file(), fmt::format("scenes[{}].nodes[{}]", shown, i),
+                             isTwice ? "names a node twice" : "names a node that has a parent",
+                             "name root nodes, once each");
+        }
+    }
+}
+
+}  // namespace helio::gltf

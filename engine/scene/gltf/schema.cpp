@@ -1,0 +1,213 @@
+#include "engine/scene/gltf/schema.hpp"
+
+#include "engine/scene/gltf/schema_check.hpp"
+
+#include <cstdint>
+#include <limits>
+
+namespace helio::gltf {
+namespace {
+
+constexpr bool required = true;
+constexpr double maximumInt = std::numeric_limits<int>::max();
+constexpr double maximumDouble = std::numeric_limits<double>::max();
+/** Sizes and offsets stay so far below 2^64 that no sum or product of them with a stride overflows. */
+constexpr double maximumSize = double(std::uint64_t(1) << 48);
+
+Check size() {
+    return integer(0, maximumSize);
+}
+Check anyNumber() {
+    return number();
+}
+Check numbers(std::size_t count) {
+    return arrayOf(anyNumber(), count, count);
+}
+
+Check asset() {
+    return object({{"version", string(), required}, {"minVersion", string()}});
+}
+
+Check accessor() {
+    // Offsets of sparse parts are an int in tinygltf.
+    const Check sparseOffset = integer(0, maximumInt);
+    const Check indices = object({{"bufferView", indexInto("bufferViews"), required},
+                                  {"byteOffset", sparseOffset},
+                                  {"componentType", oneOf({5121, 5123, 5125}), required}});
+    const Check values =
+        object({{"bufferView", indexInto("bufferViews"), required}, {"byteOffset", sparseOffset}});
+    return object({
+        {"bufferView", indexInto("bufferViews")},
+        {"byteOffset", size()},
+        {"componentType", oneOf({5120, 5121, 5122, 5123, 5125, 5126}), required},
+        {"count", integer(1, maximumInt), required},
+        {"type", oneOf(std::vector<std::string>{"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}),
+         required},
+        {"normalized", boolean()},
+        {"min", arrayOf(number(-maximumDouble, maximumDouble))},
+        {"max", arrayOf(number(-maximumDouble, maximumDouble))},
+        {"sparse", object({{"count", integer(1, maximumInt), required},
+                           {"indices", indices, required},
+                           {"values", values, required}})},
+    });
+}
+
+Check textureInfo(std::vector<Property> more = {}) {
+    const Check transform = object({{"offset", numbers(2)},
+                                    {"rotation", anyNumber()},
+                                    {"scale", numbers(2)},
+                                    {"texCoord", integer(0, 255)}});
+    more.push_back({"index", indexInto("textures"), required});
+    more.push_back({"texCoord", integer(0, 255)});
+    more.push_back({"extensions", object({{"KHR_texture_transform", transform}})});
+    return object(std::move(more));
+}
+
+Check materialExtensions() {
+    return object({
+        {"KHR_materials_emissive_strength", object({{"emissiveStrength", number(0)}})},
+        {"KHR_materials_ior", object({{"ior", number(0)}})},
+        {"KHR_materials_specular", object({{"specularFactor", number(0)},
+                                           {"specularTexture", textureInfo()},
+                                           {"specularColorFactor", arrayOf(number(0), 3, 3)},
+                                           {"specularColorTexture", textureInfo()}})},
+        {"KHR_materials_unlit", object({})},
+    });
+}
+
+Check material() {
+    const Check metallicRoughness = object({{"baseColorFactor", numbers(4)},
+                                            {"baseColorTexture", textureInfo()},
+                                            {"metallicFactor", anyNumber()},
+                                            {"roughnessFactor", anyNumber()},
+                                            {"metallicRoughnessTexture", textureInfo()},
+                                            {"extensions", object({})}});
+    return object({
+        {"name", string()},
+        {"pbrMetallicRoughness", metallicRoughness},
+        {"normalTexture", textureInfo({{"scale", anyNumber()}})},
+        {"occlusionTexture", textureInfo({{"strength", anyNumber()}})},
+        {"emissiveTexture", textureInfo()},
+        {"emissiveFactor", arrayOf(number(0), 3, 3)},
+        {"alphaMode", oneOf(std::vector<std::string>{"OPAQUE", "MASK", "BLEND"})},
+        {"alphaCutoff", number(0)},
+        {"doubleSided", boolean()},
+        {"extensions", materialExtensions()},
+    });
+}
+
+Check mesh() {
+    const Check attributes = mapOf(indexInto("accessors"));
+    const Check primitive = object({{"attributes", attributes, required},
+                                    {"indices", indexInto("accessors")},
+                                    {"material", indexInto("materials")},
+                                    {"mode", integer(0, 6)},
+                                    {"targets", arrayOf(attributes)},
+                                    {"extensions", object({})}});
+    return object({{"name", string()},
+                   {"primitives", arrayOf(primitive, 1), required},
+                   {"weights", arrayOf(anyNumber())},
+                   {"extensions", object({})}});
+}
+
+Check node() {
+    const Check light = object({{"light", indexInto("extensions.KHR_lights_punctual.lights"), required}});
+    return object({
+        {"name", string()},
+        {"children", arrayOf(indexInto("nodes"))},
+        {"matrix", numbers(16)},
+        {"translation", numbers(3)},
+        {"rotation", numbers(4)},
+        {"scale", numbers(3)},
+        {"mesh", indexInto("meshes")},
+        {"camera", indexInto("cameras")},
+        {"skin", indexInto("skins")},
+        {"weights", arrayOf(anyNumber())},
+        {"extensions", object({{"KHR_lights_punctual", light}})},
+    });
+}
+
+Check camera() {
+    const Check members = object({
+        {"name", string()},
+        {"type", oneOf(std::vector<std::string>{"perspective", "orthographic"}), required},
+        {"perspective", object({{"yfov", number(1e-6, 3.1415), required},
+                                {"znear", positive(), required},
+                                {"zfar", positive()},
+                                {"aspectRatio", positive()}})},
+        {"orthographic", object({{"xmag", anyNumber(), required},
+                                 {"ymag", positive(), required},
+                                 {"znear", number(0), required},
+                                 {"zfar", positive(), required}})},
+        {"extensions", object({})},
+    });
+    return [members](const Context& context, const Place& place, const nlohmann::json& value) {
+        members(context, place, value);
+        const auto& type = value["type"].get_ref<const std::string&>();
+        if (!value.contains(type))
+            refuse(context, place, "has no " + type, "describe the camera as its type says");
+    };
+}
+
+Check light() {
+    return object({
+        {"name", string()},
+        {"type", oneOf(std::vector<std::string>{"point", "spot", "directional"}), required},
+        {"color", arrayOf(number(0), 3, 3)},
+        {"intensity", number(0)},
+        {"range", positive()},
+        {"spot", object({{"innerConeAngle", number(0, 1.5708)}, {"outerConeAngle", number(0, 1.5708)}})},
+    });
+}
+
+const Check& documentCheck() {
+    static const Check check = object({
+        {"asset", asset(), required},
+        {"extensionsUsed", arrayOf(string())},
+        {"extensionsRequired", arrayOf(string())},
+        {"buffers", arrayOf(object({{"uri", string()}, {"byteLength", integer(1, maximumSize), required}}))},
+        {"bufferViews", arrayOf(object({{"buffer", indexInto("buffers"), required},
+                                        {"byteOffset", size()},
+                                        {"byteLength", integer(1, maximumSize), required},
+                                        {"byteStride", integer(4, 252)},
+                                        {"target", integer(0, maximumInt)},
+                                        {"extensions", object({})}}))},
+        {"accessors", arrayOf(accessor())},
+        {"images", arrayOf(object({{"name", string()},
+                                   {"uri", string()},
+                                   {"mimeType", string()},
+                                   {"bufferView", indexInto("bufferViews")}}))},
+        {"samplers", arrayOf(object({{"magFilter", oneOf({9728, 9729})},
+                                     {"minFilter", oneOf({9728, 9729, 9984, 9985, 9986, 9987})},
+                                     {"wrapS", oneOf({33071, 33648, 10497})},
+                                     {"wrapT", oneOf({33071, 33648, 10497})}}))},
+        {"textures", arrayOf(object({{"name", string()},
+                                     {"sampler", indexInto("samplers")},
+                                     {"source", indexInto("images")},
+                                     {"extensions", object({})}}))},
+        {"materials", arrayOf(material())},
+        {"meshes", arrayOf(mesh())},
+        {"cameras", arrayOf(camera())},
+        {"nodes", arrayOf(node())},
+        {"scenes", arrayOf(object({{"name", string()}, {"nodes", arrayOf(indexInto("nodes"))}}))},
+        {"scene", indexInto("scenes")},
+        {"extensions", object({{"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})}})},
+    });
+    return check;
+}
+
+}  // namespace
+
+void checkSchema(const std::string& file, const nlohmann::json& document) {
+    const Context context{file, document};
+    const Place root;
+    if (!document.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
+    documentCheck()(context, root, document);
+    const auto& version = document["asset"]["version"].get_ref<const std::string&>();
+    const Place asset{&root, "asset", 0};
+    if (!version.starts_with("2.")) {
+        refuse(context, Place{&asset, "version", 0}, "is '" + version.substr(0, 20) + "'", "give glTF 2.0");
+    }
+}
+
+}  // namespace helio::gltf

@@ -1,0 +1,207 @@
+#include "tests/unit/gltf_support.hpp"
+
+#include <cmath>
+
+namespace helio::test {
+namespace {
+
+TEST_F(Gltf, LoadsATriangleFromEveryContainer) {
+    const GltfDocument file = GltfDocument::triangle();
+    json external = file.doc;
+    external["buffers"] = json::array({{{"byteLength", file.buffer.size()}, {"uri", "some%20data.bin"}}});
+    write("some data.bin", file.buffer);
+    json percent = file.doc;
+    std::string escaped = "data:application/octet-stream,";
+    for (unsigned char c : file.buffer)
+        escaped += "%" + std::string(1, "0123456789abcdef"[c >> 4]) + "0123456789ABCDEF"[c & 15];
+    percent["buffers"] = json::array({{{"byteLength", file.buffer.size()}, {"uri", escaped}}});
+    const fs::path paths[] = {write("inline.gltf", file.withInlineBuffer().dump()),
+                              write("out.GLTF", external.dump()), write("a.glb", file.glb()),
+                              write("percent.gltf", percent.dump()),
+                              write("bom.gltf", "\xef\xbb\xbf" + file.withInlineBuffer().dump(2))};
+    for (const fs::path& path : paths) {
+        const Scene scene = helio::load(path.string());
+        EXPECT_EQ(scene.name, path.string());
+        ASSERT_EQ(scene.triangleCount(), 1u) << path;
+        const Primitive& primitive = scene.meshes[0].primitives[0];
+        EXPECT_EQ(primitive.positions[1], glm::vec3(1, 0, 0));
+        EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2}));
+        EXPECT_EQ(primitive.material, -1);
+        EXPECT_TRUE(primitive.normals.empty());
+        EXPECT_TRUE(scene.skipped.empty());
+        EXPECT_TRUE(scene.warnings.empty());
+    }
+}
+
+template <class T>
+void expectIndices(const Scene& scene) {
+    EXPECT_EQ(scene.meshes[0].primitives[0].indices, (std::vector<std::uint32_t>{2, 0, 1}))
+        << typeid(T).name();
+}
+
+TEST_F(Gltf, ReadsEveryIndexType) {
+    const auto test = [&]<class T>(T) {
+        GltfDocument file = GltfDocument::triangle();
+        file.primitive()["indices"] = file.addAccessor<T>({2, 0, 1}, "SCALAR", 3);
+        expectIndices<T>(load(file));
+    };
+    test(std::uint8_t());
+    test(std::uint16_t());
+    test(std::uint32_t());
+}
+
+TEST_F(Gltf, ReadsEveryComponentTypePlainAndNormalized) {
+    const auto test = [&]<class T>(T low, double one) {
+        for (bool isNormalized : {false, true}) {
+            GltfDocument file = GltfDocument::triangle();
+            // 4-byte steps between elements, as glTF demands of vertex attributes.
+            const T high = std::numeric_limits<T>::max();
+            std::vector<T> values;
+            const std::size_t step = sizeof(T) == 1 ? 4 : 2;
+            for (T value : {T(0), low, high}) {
+                values.insert(values.end(), {value, T(1)});
+                values.resize((values.size() + step - 1) / step * step);
+            }
+            const int accessor = file.addAccessor<T>(values, "VEC2", 3, isNormalized);
+            file.doc["bufferViews"].back()["byteStride"] = step * sizeof(T);
+            file.primitive()["attributes"]["TEXCOORD_0"] = accessor;
+            const Scene scene = load(file);
+            const auto& uv = scene.meshes[0].primitives[0].texcoords[0];
+            const double scale = isNormalized ? one : 1;
+            EXPECT_FLOAT_EQ(uv[1].x, float(std::max(double(low) / scale, isNormalized ? -1.0 : -1e9)));
+            EXPECT_FLOAT_EQ(uv[2].x, float(double(high) / scale));
+            EXPECT_FLOAT_EQ(uv[0].y, float(1 / scale));
+        }
+    };
+    test(std::int8_t(-128), 127);
+    test(std::uint8_t(3), 255);
+    test(std::int16_t(-32768), 32767);
+    test(std::uint16_t(5), 65535);
+}
+
+TEST_F(Gltf, ReadsInterleavedAttributesWithOffsets) {
+    GltfDocument file;
+    // position, normal, uv: 32 bytes a vertex, after 8 bytes of something else
+    std::vector<float> data{9, 9};
+    for (int v = 0; v < 3; ++v) {
+        data.insert(data.end(), {float(v == 1), float(v == 2), 0, 0, 0, 2, 0.25f * float(v), 1});
+    }
+    const int view = file.addView(packed(data), 32);
+    const auto add = [&](int offset, const char* type) {
+        file.doc["accessors"].push_back({{"bufferView", view},
+                                         {"byteOffset", 8 + offset},
+                                         {"componentType", 5126},
+                                         {"count", 3},
+                                         {"type", type}});
+    };
+    add(0, "VEC3");
+    add(12, "VEC3");
+    add(24, "VEC2");
+    file.doc["meshes"] = {
+        {{"primitives", {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TEXCOORD_0", 2}}}}}}}};
+    file.doc["nodes"] = {{{"mesh", 0}}};
+    const Scene scene = load(file);
+    const Primitive& primitive = scene.meshes[0].primitives[0];
+    EXPECT_EQ(primitive.positions[2], glm::vec3(0, 1, 0));
+    EXPECT_EQ(primitive.normals[1], glm::vec3(0, 0, 1)) << "normals become unit";
+    EXPECT_EQ(primitive.texcoords[0][2], glm::vec2(0.5f, 1));
+}
+
+TEST_F(Gltf, ReadsSparseAccessors) {
+    for (bool hasBase : {true, false}) {
+        GltfDocument file = GltfDocument::triangle();
+        const int indices = file.addView(packed<std::uint16_t>({1, 2}));
+        const int values = file.addView(packed<float>({5, 6, 7, 8, 9, 10}));
+        json& accessor = file.doc["accessors"][0];
+        if (!hasBase) accessor.erase("bufferView");
+        accessor["sparse"] = {{"count", 2},
+                              {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                              {"values", {{"bufferView", values}}}};
+        const Scene scene = load(file);
+        const auto& positions = scene.meshes[0].primitives[0].positions;
+        EXPECT_EQ(positions[0], glm::vec3(0));
+        EXPECT_EQ(positions[1], glm::vec3(5, 6, 7));
+        EXPECT_EQ(positions[2], glm::vec3(8, 9, 10));
+    }
+}
+
+TEST_F(Gltf, UnfoldsStripsAndFans) {
+    for (int mode : {5, 6}) {
+        GltfDocument file;
+        file.addAccessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3", 5);
+        file.doc["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"mode", mode}}}}}};
+        file.doc["nodes"] = {{{"mesh", 0}}};
+        const Scene scene = load(file);
+        const std::vector<std::uint32_t> strip{0, 1, 2, 1, 3, 2, 2, 3, 4}, fan{1, 2, 0, 2, 3, 0, 3, 4, 0};
+        EXPECT_EQ(scene.meshes[0].primitives[0].indices, mode == 5 ? strip : fan);
+    }
+}
+
+TEST_F(Gltf, NamesPointsAndLinesAsSkipped) {
+    for (int mode : {0, 1, 2, 3}) {
+        GltfDocument file = GltfDocument::triangle();
+        file.primitive()["mode"] = mode;
+        const Scene scene = load(file);
+        EXPECT_EQ(scene.triangleCount(), 0u);
+        ASSERT_EQ(scene.skipped.size(), 1u);
+        EXPECT_EQ(scene.skipped[0].first, mode == 0 ? "points" : "lines");
+    }
+}
+
+TEST_F(Gltf, ReadsVertexColoursOfThreeAndFour) {
+    for (int components : {3, 4}) {
+        GltfDocument file = GltfDocument::triangle();
+        std::vector<float> values(std::size_t(components) * 3, 0.5f);
+        file.primitive()["attributes"]["COLOR_0"] =
+            file.addAccessor(values, components == 3 ? "VEC3" : "VEC4", 3);
+        const Scene scene = load(file);
+        EXPECT_EQ(scene.meshes[0].primitives[0].colors[2],
+                  glm::vec4(0.5f, 0.5f, 0.5f, components == 3 ? 1 : 0.5f));
+    }
+    GltfDocument file = GltfDocument::triangle();
+    std::vector<std::uint8_t> bytes{255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0};
+    file.primitive()["attributes"]["COLOR_0"] = file.addAccessor(bytes, "VEC4", 3, true);
+    EXPECT_EQ(load(file).meshes[0].primitives[0].colors[0], glm::vec4(1, 0, 0.2f, 1));
+}
+
+TEST_F(Gltf, ReplacesNormalsAndTangentsThatAreZero) {
+    GltfDocument file = GltfDocument::triangle();
+    file.primitive()["attributes"]["NORMAL"] =
+        file.addAccessor<float>({0, 0, 0, 0, 0, 0, 0, 3, 4}, "VEC3", 3);
+    file.primitive()["attributes"]["TANGENT"] =
+        file.addAccessor<float>({0, 0, 0, 0, 2, 0, 0, -1, 0, 1, 0, 1}, "VEC4", 3);
+    const Scene scene = load(file);
+    const Primitive& primitive = scene.meshes[0].primitives[0];
+    EXPECT_EQ(primitive.normals[0], glm::vec3(0, 0, 1)) << "the triangle's own";
+    EXPECT_FLOAT_EQ(primitive.normals[2].y, 0.6f);
+    EXPECT_FLOAT_EQ(glm::length(glm::vec3(primitive.tangents[0])), 1);
+    EXPECT_EQ(primitive.tangents[1], glm::vec4(1, 0, 0, -1));
+}
+
+TEST_F(Gltf, LeavesOutTheRestOfATriangleWithAWarning) {
+    GltfDocument file = GltfDocument::triangle();
+    file.primitive()["indices"] = file.addAccessor<std::uint8_t>({0, 1, 2, 0, 1}, "SCALAR", 5);
+    const Scene scene = load(file);
+    EXPECT_EQ(scene.triangleCount(), 1u);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST_F(Gltf, NamesWhatItDoesNotEvaluate) {
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["extensionsUsed"] = {"KHR_materials_sheen", "EXT_mesh_gpu_instancing", "KHR_materials_ior"};
+    file.doc["skins"] = {{{"joints", {0}}}};
+    file.doc["animations"] = {{{"channels", json::array()}, {"samplers", json::array()}}};
+    file.doc["nodes"][0]["skin"] = 0;
+    file.primitive()["targets"] = {{{"POSITION", 0}}};
+    file.primitive()["attributes"]["JOINTS_0"] =
+        file.addAccessor<std::uint8_t>(std::vector<std::uint8_t>(12), "VEC4", 3);
+    const Scene scene = load(file);
+    std::vector<std::string> names;
+    for (const auto& [what, why] : scene.skipped) names.push_back(what);
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names, (std::vector<std::string>{"EXT_mesh_gpu_instancing", "KHR_materials_sheen", "animations",
+                                               "attribute JOINTS_0", "morph targets", "skins"}));
+}
+
+}  // namespace
+}  // namespace helio::test
