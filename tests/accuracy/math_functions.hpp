@@ -17,7 +17,8 @@ namespace helio::test {
 
 /** A function of one number. */
 struct UnaryFunction {
-    std::string name;             ///< as an expression of x in GLSL
+    std::string name;
+    std::string glsl;             ///< an expression of `a`, or a function's body
     float (*host)(float);         ///< the float build
     double (*reference)(double);  ///< C's
     float low, high;              ///< domain on which the bound holds
@@ -53,21 +54,23 @@ inline double cosineOfTurnsReference(long double u) {
 inline const std::vector<UnaryFunction>& unaryFunctions() {
     using namespace shared32;
     static const std::vector<UnaryFunction> table = {
-        {"realExp(x)", realExp, [](double x) { return std::exp(x); }, -87.3f, 88.72f, 1.0},
-        {"realExp2(x)", realExp2, [](double x) { return std::exp2(x); }, -126.f, 127.99f, 1.0},
-        {"realExpm1(x)", realExpm1, [](double x) { return std::expm1(x); }, -120.f, 88.72f, 1.7},
-        {"realLog(x)", realLog, [](double x) { return std::log(x); }, 1.18e-38f, 3.4e38f, 1.0},
-        {"realLog2(x)", realLog2, [](double x) { return std::log2(x); }, 1.18e-38f, 3.4e38f, 1.0},
-        {"realLog1p(x)", realLog1p, [](double x) { return std::log1p(x); }, -0.99999994f, 3.4e38f, 0.9},
-        {"realSin(x)", realSin, [](double x) { return std::sin(x); }, -1e5f, 1e5f, 1.1},
-        {"realCos(x)", realCos, [](double x) { return std::cos(x); }, -1e5f, 1e5f, 1.1},
-        {"realTan(x)", realTan, [](double x) { return std::tan(x); }, -1e5f, 1e5f, 2.9},
-        {"sineOfTurns(x)", sineOfTurns, [](double x) { return sineOfTurnsReference(x); }, -1e6f, 1e6f, 1.6},
-        {"cosineOfTurns(x)", cosineOfTurns, [](double x) { return cosineOfTurnsReference(x); }, -1e6f, 1e6f,
-         1.6},
-        {"realAsin(x)", realAsin, [](double x) { return std::asin(x); }, -1.f, 1.f, 1.4},
-        {"realAcos(x)", realAcos, [](double x) { return std::acos(x); }, -1.f, 1.f, 1.2},
-        {"realAtan(x)", realAtan, [](double x) { return std::atan(x); }, -3.4e38f, 3.4e38f, 1.4},
+        {"realExp", "realExp(a)", realExp, [](double x) { return std::exp(x); }, -87.3f, 88.72f, 1.0},
+        {"realExp2", "realExp2(a)", realExp2, [](double x) { return std::exp2(x); }, -126.f, 127.99f, 1.0},
+        {"realExpm1", "realExpm1(a)", realExpm1, [](double x) { return std::expm1(x); }, -120.f, 88.72f, 1.7},
+        {"realLog", "realLog(a)", realLog, [](double x) { return std::log(x); }, 1.18e-38f, 3.4e38f, 1.0},
+        {"realLog2", "realLog2(a)", realLog2, [](double x) { return std::log2(x); }, 1.18e-38f, 3.4e38f, 1.0},
+        {"realLog1p", "realLog1p(a)", realLog1p, [](double x) { return std::log1p(x); }, -0.99999994f,
+         3.4e38f, 0.9},
+        {"realSin", "realSin(a)", realSin, [](double x) { return std::sin(x); }, -1e5f, 1e5f, 1.1},
+        {"realCos", "realCos(a)", realCos, [](double x) { return std::cos(x); }, -1e5f, 1e5f, 1.1},
+        {"realTan", "realTan(a)", realTan, [](double x) { return std::tan(x); }, -1e5f, 1e5f, 2.9},
+        {"sineOfTurns", "float s, c; sinCosTurns(a, s, c); return s;", sineOfTurns,
+         [](double x) { return sineOfTurnsReference(x); }, -1e6f, 1e6f, 1.6},
+        {"cosineOfTurns", "float s, c; sinCosTurns(a, s, c); return c;", cosineOfTurns,
+         [](double x) { return cosineOfTurnsReference(x); }, -1e6f, 1e6f, 1.6},
+        {"realAsin", "realAsin(a)", realAsin, [](double x) { return std::asin(x); }, -1.f, 1.f, 1.4},
+        {"realAcos", "realAcos(a)", realAcos, [](double x) { return std::acos(x); }, -1.f, 1.f, 1.2},
+        {"realAtan", "realAtan(a)", realAtan, [](double x) { return std::atan(x); }, -3.4e38f, 3.4e38f, 1.4},
     };
     return table;
 }
