@@ -18,18 +18,20 @@ RasterView makeRasterView(const glm::dmat4& cameraToWorld, const Camera& camera,
     if (size[0] == 0 || size[1] == 0 || size[0] > kMaxRasterSize || size[1] > kMaxRasterSize)
         refuse(fmt::format("image of {} x {} pixels", size[0], size[1]),
                "choose 1 to 16384 pixels each way for the rasterizer");
-    const glm::dvec3 axisX(cameraToWorld[0]), axisY(cameraToWorld[1]), axisZ(cameraToWorld[2]);
-    const double lengths[3] = {glm::length(axisX), glm::length(axisY), glm::length(axisZ)};
-    for (double length : lengths)
-        if (!(length > 0.0) || !std::isfinite(length))
-            refuse("its transform is singular", "correct the node's transform");
+    const glm::dvec3 axisY(cameraToWorld[1]), axisZ(cameraToWorld[2]);
+    // A sheared transform's axes are made orthogonal again, the view direction kept.
+    const glm::dvec3 forward = -axisZ / glm::length(axisZ);
+    const glm::dvec3 across = glm::cross(forward, axisY);
+    const glm::dvec3 right = across / glm::length(across), up = glm::cross(right, forward);
+    if (!std::isfinite(right.x + right.y + right.z))
+        refuse("its transform is singular", "correct the node's transform");
 
     RasterView view;
-    view.eye = glm::dvec3(cameraToWorld[3]);
+    // Vertices are floats in world space; the eye is put on the same grid, as rays have it.
+    view.eye = glm::dvec3(glm::vec3(glm::dvec3(cameraToWorld[3])));
     view.width = size[0];
     view.height = size[1];
-    view.rowW = -axisZ / lengths[2];
-    const glm::dvec3 right = axisX / lengths[0], up = axisY / lengths[1];
+    view.rowW = forward;
     const double halfWidth = 0.5 * size[0], halfHeight = 0.5 * size[1];
     if (camera.perspective) {
         const double tangent = std::tan(0.5 * double(camera.yfov));

@@ -4,6 +4,7 @@
 #include "tests/accuracy/raster_oracle.hpp"
 #include "tests/support/device.hpp"
 
+#include <heliograph/error.hpp>
 #include <heliograph/graph.hpp>
 
 #include <gtest/gtest.h>
