@@ -27,8 +27,8 @@ struct Progress {
     std::uint32_t samples = 0;  ///< per pixel, finished
     double seconds = 0;         ///< rendering so far
     double raysPerSecond = 0;
-    double relmse = -1;         ///< estimate so far; negative before there is one
-    double secondsLeft = -1;    ///< negative where unknown
+    double relmse = -1;       ///< estimate so far; negative before there is one
+    double secondsLeft = -1;  ///< negative where unknown
 };
 
 struct RenderOptions {
@@ -42,7 +42,7 @@ struct RenderOptions {
     SamplerKind sampler = SamplerKind::Sobol;
     bool nextEventEstimation = true;
     std::uint32_t seed = 0;
-    std::string camera;  ///< name or index; empty for the first
+    std::string camera;                      ///< name or index; empty for the first
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
@@ -54,7 +54,10 @@ struct RenderOptions {
 struct RayCounts {
     std::uint64_t camera = 0, bounce = 0, shadow = 0;
 };
-/** Estimated relMSE of the image with a 95 % interval. */
+/** Estimated relMSE of the image, mean((x - truth)^2 / (truth^2 + 0.01)), with a 95 % interval for the error
+ * of this very image, from two independently scrambled halves of the samples. Not reliable with fewer than 8
+ * samples, where few pixels carry most of the error (fireflies), or where noise hides the brightness that the
+ * error is relative to; with one sample a guess from neighbouring pixels. */
 struct ErrorEstimate {
     double relmse = 0, low = 0, high = 0;
     bool reliable = false;
@@ -65,11 +68,13 @@ struct RenderResult {
     ImageF image;  ///< linear; R G B and the auxiliary channels
     ErrorEstimate error;
     double seconds = 0;  ///< rendering; set-up apart
+    /** From the start of the process for its first render, else from the call, to the end of the first
+     * (compiling) run of every kernel. CPU seconds are user and system time of the whole process. */
     double setupSeconds = 0, setupCpuSeconds = 0, renderCpuSeconds = 0;
     std::uint32_t samples = 0;
     RayCounts rays;
     std::uint64_t nanCount = 0, truncatedPaths = 0;
-    std::uint64_t hostBytes = 0, deviceBytes = 0;  ///< peaks
+    std::uint64_t hostBytes = 0, deviceBytes = 0;  ///< peaks: resident set, memory handed out by the device
     struct PassTime {
         std::string name;
         double milliseconds = 0;
@@ -94,8 +99,16 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
 
     Device& device();
-    /** Renders. Throws InputError, DeviceError. */
+    /** Renders. Throws InputError, DeviceError. What is on the device already is used again: the scene where
+     * its content (found by fingerprint: geometry, placement, materials, textures, lights, environment) is
+     * the last render's, whatever became of its cameras; the film where the size is. A scene in which nothing
+     * gives light is lit by an environment of radiance 1, with a warning; an environment in the options
+     * prevents that. The raster pipeline takes one sample at each pixel's centre and reports an error of 0
+     * that is not reliable. */
     RenderResult render(const Scene& scene, const RenderOptions& options = {});
+    /** How often a scene was made ready for the device: does not grow where a render found its scene there.
+     */
+    std::uint64_t sceneBuilds() const;
     /** Graphviz of the last render's main plan. */
     std::string graphviz() const;
 

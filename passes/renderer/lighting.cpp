@@ -1,0 +1,45 @@
+#include "passes/renderer/lighting.hpp"
+
+#include <algorithm>
+
+namespace helio {
+namespace {
+
+bool emits(const Scene& scene, const Primitive& primitive) {
+    return primitive.material >= 0 && std::size_t(primitive.material) < scene.materials.size() &&
+           scene.materials[std::size_t(primitive.material)].emission != glm::vec3(0.0f);
+}
+
+}  // namespace
+
+bool hasLight(const Scene& scene, const std::optional<Environment>& environment) {
+    if (environment && environment->radiance != glm::vec3(0.0f)) return true;
+    const std::vector<PlacedLight> lights = scene.placedLights();
+    if (std::ranges::any_of(lights, [&](const PlacedLight& placed) {
+            return scene.lights[std::size_t(placed.light)].intensity != glm::vec3(0.0f);
+        })) {
+        return true;
+    }
+    const std::vector<Instance> instances = scene.instances();
+    return std::ranges::any_of(instances, [&](const Instance& instance) {
+        const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+        return std::ranges::any_of(mesh.primitives, [&](const Primitive& p) { return emits(scene, p); });
+    });
+}
+
+std::optional<Environment> chooseEnvironment(const Scene& scene, const RenderOptions& options,
+                                             std::vector<std::string>& warnings) {
+    const std::optional<Environment>& chosen = options.environment ? options.environment : scene.environment;
+    if (hasLight(scene, chosen)) return chosen;
+    if (options.environment) {
+        warnings.push_back(
+            "nothing in the scene gives light and the environment is black: so is the picture");
+        return chosen;
+    }
+    warnings.push_back(
+        "nothing in the scene gives light: it is lit by an environment of radiance 1 from everywhere; "
+        "--environment 0,0,0 turns that off");
+    return Environment{glm::vec3(1.0f), -1};
+}
+
+}  // namespace helio

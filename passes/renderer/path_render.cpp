@@ -1,0 +1,169 @@
+#include "passes/renderer/path_render.hpp"
+
+#include "engine/film/variance.hpp"
+#include "passes/renderer/frame.hpp"
+#include "passes/renderer/sample_schedule.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace helio {
+namespace {
+
+/** The loop over batches, and what is told about it. */
+class PathLoop {
+public:
+    PathLoop(PathTracer& tracer, FilmTarget& target, RenderJob& job)
+        : tracer_(tracer), target_(target), job_(job), schedule_(job.options) {}
+
+    /** Samples per pixel that the film holds at the end. */
+    std::uint32_t run() {
+        std::uint32_t reached = 0;
+        for (;;) {
+            const std::uint32_t end = schedule_.next(reached, job_.seconds());
+            if (end == reached || !trace(end, reached)) return reached;
+            reached = end;
+            if (judged(reached)) return reached;
+        }
+    }
+
+private:
+    /** Traces to the end of a batch; false where the application cancels. */
+    bool trace(std::uint32_t end, std::uint32_t reached) {
+        for (bool done = false; !done;) {
+            done = tracer_.advance(end);
+            if (!job_.notify(progress(done ? end : reached)) && !done) return false;
+        }
+        return true;
+    }
+
+    /** Whether nothing more is to be done; estimates the error where somebody wants to know it. */
+    bool judged(std::uint32_t reached) {
+        if (job_.result.cancelled || reached >= job_.options.samples) return true;
+        if (job_.options.maxError > 0 && reached >= 8) {
+            const ErrorEstimate error = estimateError(target_.resolve());
+            relmse_ = error.relmse;
+            if (error.high < job_.options.maxError && error.reliable) return true;
+        }
+        return false;
+    }
+
+    Progress progress(std::uint32_t reached) const {
+        const PathCounters counters = tracer_.counters();
+        const double paths =
+            double(job_.options.samples) * job_.options.size[0] * double(job_.options.size[1]);
+        Progress progress;
+        progress.stage = "render";
+        progress.samples = reached;
+        progress.fraction = std::min(1.0, double(counters.cameraRays) / paths);
+        progress.seconds = job_.seconds();
+        if (progress.seconds > 0) {
+            progress.raysPerSecond =
+                double(counters.cameraRays + counters.bounceRays + counters.shadowRays) / progress.seconds;
+        }
+        progress.relmse = relmse_;
+        if (progress.fraction > 0) {
+            progress.secondsLeft = progress.seconds * (1 - progress.fraction) / progress.fraction;
+            if (job_.options.maxSeconds > 0) {
+                const double limit = std::max(0.0, job_.options.maxSeconds - progress.seconds);
+                progress.secondsLeft = std::min(progress.secondsLeft, limit);
+            }
+        }
+        return progress;
+    }
+
+    PathTracer& tracer_;
+    FilmTarget& target_;
+    RenderJob& job_;
+    SampleSchedule schedule_;
+    double relmse_ = -1;
+};
+
+void addFirstHits(Frame& frame, const FirstHits& hits) {
+    frame.add({"albedo.R", "albedo.G", "albedo.B"}, &hits.albedo.data()->x, 3);
+    frame.add({"normal.X", "normal.Y", "normal.Z"}, &hits.normal.data()->x, 3);
+    frame.add({"depth.Z"}, hits.depth.data(), 1);
+    const std::vector<float> instance(hits.instance.begin(), hits.instance.end());
+    const std::vector<float> triangle(hits.triangle.begin(), hits.triangle.end());
+    frame.add({"id.instance"}, instance.data(), 1);
+    frame.add({"id.triangle"}, triangle.data(), 1);
+}
+
+void noteCounters(const PathCounters& counters, RenderResult& result) {
+    result.rays = {counters.cameraRays, counters.bounceRays, counters.shadowRays};
+    result.truncatedPaths = counters.truncatedPaths;
+    if (counters.truncatedPaths > 0) {
+        result.warnings.push_back(
+            fmt::format("{} paths were cut after {} scatterings: the picture is darker than it should be",
+                        counters.truncatedPaths, kUnlimitedDepth));
+    }
+    if (counters.abandonedRays > 0) {
+        result.warnings.push_back(fmt::format(
+            "{} rays were given up in the tree: thousands of triangles coincide", counters.abandonedRays));
+    }
+}
+
+/** Device times without those of set-up, which hold the driver's compilation. */
+std::vector<PassTiming> timingsSince(const std::vector<PassTiming>& before, std::vector<PassTiming> now) {
+    for (const PassTiming& timing : before) {
+        const auto found = std::ranges::find(now, timing.name, &PassTiming::name);
+        if (found != now.end()) found->milliseconds -= timing.milliseconds;
+    }
+    return now;
+}
+
+}  // namespace
+
+PathTraceOptions pathTraceOptions(const RenderOptions& options) {
+    PathTraceOptions result;
+    result.size = options.size;
+    result.maxDepth = options.maxDepth < 0
+                          ? kUnlimitedDepth
+                          : std::uint32_t(std::min<std::int64_t>(options.maxDepth, kUnlimitedDepth));
+    result.nextEventEstimation = options.nextEventEstimation;
+    result.sampler = options.sampler;
+    result.filter = options.filter;
+    result.seed = options.seed;
+    return result;
+}
+
+void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job) {
+    RenderResult& result = job.result;
+    target.clear();
+    PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, pathTraceOptions(job.options),
+                      target.film());
+    job.graphviz = tracer.graphviz();
+    // Every kernel runs once before the clock of rendering starts: the driver compiles at the first dispatch.
+    // The pass of first hits needs no second run.
+    tracer.advance(0);
+    target.resolve();
+    FirstHits hits;
+    if (job.options.auxiliary) hits = tracer.firstHits();
+    const std::vector<PassTiming> compiling = tracer.timings();
+    job.beginRendering();
+
+    result.samples = PathLoop(tracer, target, job).run();
+    const FilmImages film = target.resolve();
+    result.error = estimateError(film);
+    job.finish();
+
+    Frame frame(film.width, film.height);
+    frame.add({"R", "G", "B"}, film.mean.data(), 4);
+    if (job.options.auxiliary) {
+        addFirstHits(frame, hits);
+        const bool stratified = job.options.sampler != SamplerKind::Independent;
+        const std::vector<float> variance = stratified ? varianceOfMean(film) : film.variance;
+        frame.add({"variance.R", "variance.G", "variance.B"}, variance.data(), 4);
+        frame.add({"samples"}, film.mean.data(), 4, 3);
+    }
+    result.image = frame.image();
+    for (std::size_t i = 3; i < film.variance.size(); i += 4)
+        result.nanCount += std::uint64_t(film.variance[i]);
+    noteCounters(tracer.counters(), result);
+    for (const auto& skipped : tracer.skipped()) result.skipped.push_back(skipped);
+    job.addTimings(target.timings());
+    job.addTimings(timingsSince(compiling, tracer.timings()));
+}
+
+}  // namespace helio

@@ -1,0 +1,17 @@
+#pragma once
+/** @file The path pipeline of the renderer. */
+#include "passes/pathtrace/path_tracer.hpp"
+#include "passes/renderer/film_target.hpp"
+#include "passes/renderer/prepared_scene.hpp"
+#include "passes/renderer/render_job.hpp"
+
+namespace helio {
+
+/** The path tracer's options for a render. */
+PathTraceOptions pathTraceOptions(const RenderOptions& options);
+
+/** Traces the scene into the film until the samples, the time or the error asked for are reached, or the
+ * application cancels; fills in the job's result. The film holds the samples of all whole batches. */
+void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job);
+
+}  // namespace helio

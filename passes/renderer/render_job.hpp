@@ -1,0 +1,50 @@
+#pragma once
+/** @file One call of Renderer::render: what both pipelines are given and fill in. */
+#include "passes/renderer/process_clock.hpp"
+
+#include <heliograph/graph.hpp>
+#include <heliograph/renderer.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace helio {
+
+class RenderJob {
+public:
+    explicit RenderJob(const RenderOptions& renderOptions)
+        : options(renderOptions), setup_(Stopwatch::sinceProcessStartOnce()) {}
+
+    const RenderOptions& options;
+    RenderResult result;
+    std::string graphviz;
+
+    /** Tells the application; false where it cancels, which is also noted in the result. */
+    bool notify(const Progress& progress) {
+        if (options.progress && !options.progress(progress)) result.cancelled = true;
+        return !result.cancelled;
+    }
+    /** Set-up ends, rendering begins. */
+    void beginRendering() {
+        result.setupSeconds = setup_.seconds();
+        result.setupCpuSeconds = setup_.cpuSeconds();
+        rendering_.emplace();
+    }
+    /** Seconds of rendering so far. */
+    double seconds() const { return rendering_ ? rendering_->seconds() : 0; }
+    /** Notes the times; whoever was cancelled before rendering has all of it as set-up. */
+    void finish() {
+        if (!rendering_) beginRendering();
+        result.seconds = rendering_->seconds();
+        result.renderCpuSeconds = rendering_->cpuSeconds();
+    }
+    /** Adds device times, summed by name. */
+    void addTimings(const std::vector<PassTiming>& timings);
+
+private:
+    Stopwatch setup_;
+    std::optional<Stopwatch> rendering_;
+};
+
+}  // namespace helio

@@ -1,0 +1,143 @@
+#include "passes/renderer/lighting.hpp"
+#include "passes/renderer/path_render.hpp"
+#include "passes/renderer/prepared_scene.hpp"
+#include "passes/renderer/raster_render.hpp"
+#include "passes/renderer/render_job.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/renderer.hpp>
+#include <heliograph/version.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace helio {
+namespace {
+
+void refuse(bool bad, const char* option, const std::string& fault, const char* remedy) {
+    if (bad) throw InputError("", option, fault, remedy);
+}
+
+void check(const RenderOptions& options) {
+    const auto [width, height] = options.size;
+    refuse(width == 0 || height == 0, "size", fmt::format("{}x{} pixels", width, height),
+           "give at least 1x1");
+    refuse(options.samples == 0 || options.samples > (1u << 24), "samples",
+           fmt::format("{} samples per pixel", options.samples), "give 1 to 16777216");
+    refuse(!(options.maxError >= 0), "maxError", "is negative or not a number", "give 0 for no limit");
+    refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
+    if (!options.environment) return;
+    const Environment& environment = *options.environment;
+    refuse(environment.image >= 0, "environment", "an image as environment is not there yet",
+           "give a constant radiance");
+    for (int c = 0; c < 3; ++c) {
+        const float radiance = environment.radiance[c];
+        refuse(!(radiance >= 0) || std::isinf(radiance), "environment", fmt::format("radiance {}", radiance),
+               "give finite numbers of at least 0");
+    }
+}
+
+/** A black picture: what there is when a render is cancelled before its first sample. */
+ImageF blackImage(const std::array<std::uint32_t, 2>& size) {
+    return {size[0], size[1], {"R", "G", "B"}, std::vector<float>(std::size_t(size[0]) * size[1] * 3), {}};
+}
+
+template <typename T>
+void removeRepeated(std::vector<T>& list) {
+    std::vector<T> kept;
+    for (T& entry : list) {
+        if (std::ranges::find(kept, entry) == kept.end()) kept.push_back(std::move(entry));
+    }
+    list = std::move(kept);
+}
+
+}  // namespace
+
+void RenderJob::addTimings(const std::vector<PassTiming>& timings) {
+    for (const PassTiming& timing : timings) {
+        const auto known = std::ranges::find(result.passes, timing.name, &RenderResult::PassTime::name);
+        if (known == result.passes.end()) {
+            result.passes.push_back({timing.name, timing.milliseconds});
+        } else {
+            known->milliseconds += timing.milliseconds;
+        }
+    }
+}
+
+struct Renderer::Impl {
+    explicit Impl(const DeviceOptions& options) : device(options), scenes(device) {}
+
+    void run(const Scene& scene, RenderJob& job);
+    FilmTarget& film(const std::array<std::uint32_t, 2>& size) {
+        if (!target || target->film().width() != size[0] || target->film().height() != size[1]) {
+            target.reset();
+            target = std::make_unique<FilmTarget>(device, size[0], size[1]);
+        }
+        return *target;
+    }
+
+    Device device;
+    SceneCache scenes;
+    std::unique_ptr<FilmTarget> target;
+    std::string graphviz;
+};
+
+void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
+    const RenderOptions& options = job.options;
+    if (!job.notify({.stage = "load"})) return;
+    const View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
+    const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
+    const bool path = options.pipeline == Pipeline::Path;
+    const PackOptions pack =
+        path ? PathTracer::packOptions(scene, pathTraceOptions(options)) : rasterPackOptions();
+    PreparedScene& prepared = scenes.prepare(scene, environment, pack);
+    job.result.features = prepared.features;
+    job.result.skipped = prepared.skipped;
+    if (!job.notify({.stage = "compile"})) return;
+    if (path) {
+        renderPaths(device, prepared, view, film(options.size), job);
+    } else {
+        renderRaster(device, prepared, view, job);
+    }
+}
+
+Renderer::Renderer(const DeviceOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Device& Renderer::device() {
+    return impl_->device;
+}
+
+std::string Renderer::graphviz() const {
+    return impl_->graphviz;
+}
+
+std::uint64_t Renderer::sceneBuilds() const {
+    return impl_->scenes.builds();
+}
+
+RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) {
+    RenderJob job(options);
+    RenderResult& result = job.result;
+    check(options);
+    result.scene = scene.name;
+    result.device = impl_->device.info().name;
+    result.version = version();
+    result.seed = options.seed;
+    result.warnings = scene.warnings;
+    impl_->run(scene, job);
+    job.finish();
+    if (result.image.data.empty()) result.image = blackImage(options.size);
+    if (!job.graphviz.empty()) impl_->graphviz = job.graphviz;
+    removeRepeated(result.skipped);
+    removeRepeated(result.warnings);
+    result.hostBytes = peakHostBytes();
+    result.deviceBytes = impl_->device.memory().peakUsedBytes;
+    return std::move(job.result);
+}
+
+}  // namespace helio

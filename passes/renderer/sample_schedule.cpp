@@ -1,0 +1,41 @@
+#include "passes/renderer/sample_schedule.hpp"
+
+#include <algorithm>
+
+namespace helio {
+namespace {
+
+constexpr std::uint64_t firstBatchPaths = 1u << 22;  // about a second where tracing is quick
+constexpr std::uint32_t longestBatch = 1024;         // samples per pixel; the film takes 4096
+
+}  // namespace
+
+SampleSchedule::SampleSchedule(const RenderOptions& options)
+    : samples_(options.samples), limit_(longestBatch), growth_(4), maxSeconds_(options.maxSeconds) {
+    const std::uint64_t pixels = std::uint64_t(options.size[0]) * options.size[1];
+    first_ = std::uint32_t(std::clamp<std::uint64_t>(firstBatchPaths / pixels, 1, 64));
+    if (options.maxError > 0) {
+        // The error is known only at the ends: 8 samples are the fewest that are judged, then half as much
+        // again.
+        first_ = std::min(first_, 8u);
+        growth_ = 1.5;
+    }
+    if (maxSeconds_ > 0) first_ = 1;
+}
+
+std::uint32_t SampleSchedule::next(std::uint32_t reached, double seconds) const {
+    if (reached >= samples_) return reached;
+    std::uint64_t end = first_;
+    // Follows the sequence of ends from its start, so that it is the same whatever was reached when.
+    while (end <= reached) end = std::min(std::uint64_t(double(end) * growth_ + 0.5), end + limit_);
+    if (maxSeconds_ > 0 && reached > 0) {
+        if (seconds >= maxSeconds_) return reached;
+        const double perSample = seconds / reached, left = maxSeconds_ - seconds;
+        if (perSample > left) return reached;  // not even one more
+        const double affordable = std::max(1.0, 0.5 * left / perSample);
+        if (affordable < double(end - reached)) end = reached + std::uint64_t(affordable);
+    }
+    return std::uint32_t(std::min<std::uint64_t>(end, samples_));
+}
+
+}  // namespace helio

@@ -1,0 +1,26 @@
+#pragma once
+/** @file At which sample counts the film is brought up to date. */
+#include <heliograph/renderer.hpp>
+
+#include <cstdint>
+
+namespace helio {
+
+/** Batches of samples. Every end of a batch costs the lanes that wait for the longest paths, so there are
+ * few: the first is small where the picture is large, so that something is there soon, and later ones grow.
+ * The ends are a function of the options alone, so that a render's bits never depend on its speed, unless a
+ * time limit is set: then batches are also kept to half of the time that is left. */
+class SampleSchedule {
+public:
+    explicit SampleSchedule(const RenderOptions& options);
+
+    /** The next end after `reached` samples per pixel in `seconds` of rendering; `reached` where time or
+     * samples are used up. */
+    std::uint32_t next(std::uint32_t reached, double seconds) const;
+
+private:
+    std::uint32_t samples_, first_, limit_;
+    double growth_, maxSeconds_;
+};
+
+}  // namespace helio
