@@ -8,7 +8,7 @@
 #if PRECISION_BITS == 32
 CONST Real SPLITTER = 4097.0;  // 2^12 + 1
 #else
-CONST Real SPLITTER = 134217729.0;  // 2^27 + 1
+CONST Real SPLITTER = REAL(134217729.0);  // 2^27 + 1
 #endif
 
 /// a + b = sum + error exactly (Knuth).

@@ -144,4 +144,53 @@ TEST(DeviceMath, SpecialValuesAreThoseOfTheHost) {
     }
 }
 
+TEST(DeviceMath, SumsAndProductsLoseNothing) {
+    std::mt19937_64 random(103);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<float> a, b;
+    for (int i = 0; i < 1'000'000; ++i) {
+        a.push_back(static_cast<float>(std::ldexp(unit(random), static_cast<int>(random() % 60) - 30)));
+        b.push_back(static_cast<float>(std::ldexp(unit(random), static_cast<int>(random() % 60) - 30)));
+    }
+    const char* file = "shaders/shared/error_free.glsl";
+    const auto sums =
+        runOnDevice<glm::vec2>(file, "float e; float s = twoSum(a, b, e); return vec2(s, e);", a, b);
+    const auto products =
+        runOnDevice<glm::vec2>(file, "float e; float p = twoProduct(a, b, e); return vec2(p, e);", a, b);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        // Exact: a product of floats in double, the sum in long double where exponents are within 2^40.
+        ASSERT_EQ(double{products[i].x} + products[i].y, double{a[i]} * b[i]) << a[i] << " " << b[i];
+        const long double sum = static_cast<long double>(sums[i].x) + sums[i].y;
+        if (std::fabs(std::ilogb(a[i]) - std::ilogb(b[i])) < 39) {
+            ASSERT_EQ(sum, static_cast<long double>(a[i]) + b[i]) << a[i] << " " << b[i];
+        }
+    }
+}
+
+TEST(DeviceMath, QuadraticRoots) {
+    std::mt19937_64 random(104);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::vector<glm::vec3> equations;
+    for (int i = 0; i < 300'000; ++i) {
+        glm::vec3 e(unit(random), unit(random), unit(random));
+        if (i % 2) e.z = static_cast<float>(double{e.y} * e.y / (4 * double{e.x}));  // nearly a double root
+        equations.push_back(e);
+    }
+    const auto roots = runOnDevice<glm::vec3>("shaders/shared/error_free.glsl",
+                                              "float l, h; int n = solveQuadratic(a.x, a.y, a.z, l, h); "
+                                              "return n == 2 ? vec3(n, l, h) : vec3(n, 0, 0);",
+                                              equations);
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        const long double a = equations[i].x, b = equations[i].y, c = equations[i].z;
+        const long double discriminant =
+            b * b - 4 * a * c;  // 49 bits each: exact but for the last difference
+        ASSERT_EQ(roots[i].x, discriminant < 0 ? 0 : 2) << i;
+        if (discriminant < 0) continue;
+        const long double q = -0.5L * (b + std::copysign(std::sqrt(discriminant), b));
+        const long double x1 = q / a, x2 = c / q;
+        ASSERT_LE(verify::ulpError(roots[i].y, double(std::min(x1, x2))), 3) << i;
+        ASSERT_LE(verify::ulpError(roots[i].z, double(std::max(x1, x2))), 3) << i;
+    }
+}
+
 }  // namespace

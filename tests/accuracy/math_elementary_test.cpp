@@ -107,6 +107,8 @@ TEST(MathElementary, SpecialValuesAreThoseOfC) {
         check(shared32::realAsin(x), std::asin(x), "asin");
         check(shared32::realAcos(x), std::acos(x), "acos");
         check(shared32::realAtan(x), std::atan(x), "atan");
+        check(shared32::realErf(x), std::erf(x), "erf");
+        check(shared32::realCbrt(x), std::cbrt(x), "cbrt");
     }
     EXPECT_EQ(shared32::realExpm1(-kInfinity), -1.f);
     EXPECT_EQ(shared32::realAtan(kInfinity), std::atan(kInfinity));
@@ -136,6 +138,26 @@ TEST(MathElementary, PowAndAtan2SpecialValuesAreThoseOfC) {
                 EXPECT_LE(verify::ulpError(shared32::realAtan2(x, y), angle), 1.5) << of;
             }
         }
+}
+
+TEST(MathElementary, InverseErrorFunctionInDoubleUndoesTheErrorFunction) {
+    // The reference itself: C has no inverse to compare with.
+    for (int i = 1; i < 4000; ++i) {
+        const double x = 0.001L * i;
+        if (x < 1) {
+            EXPECT_NEAR(shared64::realErfInverse(std::erf(x)) / x, 1, 1e-13L) << x;
+        }
+        // Near 1 the argument's own spacing limits what can come back.
+        const double spacing = 1.2e-16L * std::exp(x * x);
+        EXPECT_NEAR(shared64::realErfInverse(std::erf(x)), x, spacing + 1e-14L) << x;
+    }
+    EXPECT_NEAR(shared64::realErfInverse(0.5L), 0.476936276204469873381L, 1e-15L);
+    EXPECT_EQ(shared64::realErfInverse(1), INFINITY);
+    EXPECT_TRUE(std::isnan(shared64::realErfInverse(1.5L)));
+    EXPECT_EQ(shared32::realErfInverse(1), kInfinity);
+    EXPECT_EQ(shared32::realErfInverse(-1), -kInfinity);
+    EXPECT_TRUE(std::isnan(shared32::realErfInverse(1.5f)));
+    EXPECT_TRUE(std::isnan(shared32::realErfInverse(kNaN)));
 }
 
 TEST(MathElementary, TurnsAreExactAtQuarters) {

@@ -53,6 +53,19 @@ TEST(MathErrorFree, SumsAndProductsLoseNothing) {
     }
 }
 
+TEST(MathErrorFree, DoubleBuildLosesNothingEither) {
+    std::mt19937_64 random(15);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int i = 0; i < 1'000'000; ++i) {
+        const double a = unit(random), b = std::ldexp(unit(random), static_cast<int>(random() % 40) - 20);
+        double error;
+        const double sum = shared64::twoSum(a, b, error);
+        ASSERT_TRUE(Quad(sum) + error == Quad(a) + b) << a << " " << b;
+        const double product = shared64::twoProduct(a, b, error);
+        ASSERT_TRUE(Quad(product) + error == Quad(a) * b) << a << " " << b;
+    }
+}
+
 TEST(MathErrorFree, DifferenceOfProductsSurvivesCancellation) {
     Floats random(12);
     double worst = 0, plain = 0;

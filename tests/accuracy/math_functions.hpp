@@ -71,6 +71,10 @@ inline const std::vector<UnaryFunction>& unaryFunctions() {
         {"realAsin", "realAsin(a)", realAsin, [](double x) { return std::asin(x); }, -1.f, 1.f, 1.4},
         {"realAcos", "realAcos(a)", realAcos, [](double x) { return std::acos(x); }, -1.f, 1.f, 1.2},
         {"realAtan", "realAtan(a)", realAtan, [](double x) { return std::atan(x); }, -3.4e38f, 3.4e38f, 1.4},
+        {"realErf", "realErf(a)", realErf, [](double x) { return std::erf(x); }, -10.f, 10.f, 1.3},
+        {"realErfInverse", "realErfInverse(a)", realErfInverse,
+         [](double y) { return shared64::realErfInverse(y); }, -0.99999994f, 0.99999994f, 3.0},
+        {"realCbrt", "realCbrt(a)", realCbrt, [](double x) { return std::cbrt(x); }, -3.4e38f, 3.4e38f, 1.0},
     };
     return table;
 }
