@@ -532,6 +532,17 @@ TEST(Layouts, SampledAndStorageInOnePassIsGeneral) {
     expectSound(g, plan);
 }
 
+TEST(Layouts, StorageAfterSampledInOnePassIsGeneralToo) {
+    Builder g;
+    const auto a = g.image("a"), b = g.buffer("b");
+    g.pass("w").writes(a);
+    g.pass("both").access(a, Mode::Read, Usage::SampledImage).reads(a).writes(b);
+    g.readback(b);
+    const Compiled plan = g.compile();
+    EXPECT_EQ(stepOf(g.input, plan, "both")->uses[0].layout, Layout::General);
+    expectSound(g, plan);
+}
+
 TEST(Layouts, SampledHasItsOwnLayoutAndComesBack) {
     Builder g;
     const auto a = g.image("a"), b = g.buffer("b");

@@ -30,6 +30,23 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
     return x ^ (x >> 31);
 }
 
+/** Whether Vulkan allows these accesses to an image in this layout. */
+bool layoutServes(Layout layout, Accesses accesses) {
+    switch (layout) {
+        case Layout::Undefined:
+            return false;
+        case Layout::General:
+            return true;
+        case Layout::ShaderRead:
+            return accesses == access::SampledRead;
+        case Layout::TransferSource:
+            return accesses == access::TransferRead;
+        case Layout::TransferDestination:
+            return accesses == access::TransferWrite;
+    }
+    return false;
+}
+
 /** Symbols of every resource before and after every declared pass, run in order on separate memory. */
 struct Reference {
     std::vector<std::map<std::uint32_t, std::uint64_t>> before, after;  ///< by pass, by resource
@@ -226,6 +243,9 @@ void HazardSimulator::execute(const Input& input, const Compiled& compiled, std:
                     input.resources[use.resource].imported ? Layout::General : Layout::Undefined;
                 if (layouts_.try_emplace(place.resource, initial).first->second != use.layout)
                     faults_.push_back(what + " finds another layout than it should");
+                for (const Touch& each : use.touches)
+                    if (!layoutServes(use.layout, each.access))
+                        faults_.push_back(what + " is in a layout that does not serve its accesses");
             }
             for (const Touch& each : use.touches)
                 for (Accesses bit = 1; bit != 0 && bit < access::AllWrites; bit <<= 1)
