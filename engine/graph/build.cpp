@@ -57,7 +57,15 @@ private:
         input_.readbacks = graph_.readbackInputs;
         input_.limits.bufferImageGranularity = gpu_.memory.bufferImageGranularity();
         input_.limits.maxArenaBytes = gpu_.facts.properties11.maxMemoryAllocationSize;
-        for (const DeclaredResource& resource : graph_.resources) input_.resources.push_back(resource.input);
+        for (const DeclaredResource& resource : graph_.resources) {
+            input_.resources.push_back(resource.input);
+            const Device::Impl* owner = resource.buffer  ? resource.buffer->device
+                                        : resource.image ? resource.image->device
+                                                         : &gpu_;
+            if (owner != &gpu_)
+                problems_.push_back({"", "", resource.input.name,
+                                     "is imported from another device; make it on the graph's device"});
+        }
         askMemory();
         for (const DeclaredPass& declared : graph_.passes) {
             PassInput pass{.name = declared.name, .accesses = {}, .keep = declared.keep};
@@ -146,13 +154,18 @@ private:
     void makeResources() {
         PlanObjects& objects = plan_->objects;
         std::vector<std::uint64_t> alignment(plan_->compiled.arenas.size(), 1);
-        for (const Placement& placement : plan_->compiled.placements)
-            alignment[placement.arena] =
-                std::max(alignment[placement.arena], plan_->input.resources[placement.resource].alignment);
+        std::vector<const Placement*> largest(plan_->compiled.arenas.size(), nullptr);
+        for (const Placement& placement : plan_->compiled.placements) {
+            const std::uint32_t arena = placement.arena;
+            alignment[arena] =
+                std::max(alignment[arena], plan_->input.resources[placement.resource].alignment);
+            if (!largest[arena] || placement.bytes > largest[arena]->bytes) largest[arena] = &placement;
+        }
         for (std::size_t i = 0; i < plan_->compiled.arenas.size(); ++i) {
             const Arena& arena = plan_->compiled.arenas[i];
             objects.arenas.push_back(
-                gpu_.memory.allocate({.name = fmt::format("transients of a plan, arena {}", i),
+                gpu_.memory.allocate({.name = fmt::format("transients of a plan, the largest of which is {}",
+                                                          plan_->input.resources[largest[i]->resource].name),
                                       .bytes = arena.bytes,
                                       .alignment = alignment[i],
                                       .typeBits = classTypes_[arena.memoryClass],

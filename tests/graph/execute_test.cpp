@@ -11,6 +11,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <iostream>
 #include <numeric>
 
 namespace helio {
@@ -379,6 +380,44 @@ TEST(Execute, TexelAndUniformBuffersAndWindows) {
     ASSERT_EQ(read.size(), n);
     for (std::uint32_t i = 0; i < n; ++i)
         EXPECT_EQ(read[i], 2.0f * float(i) + 1000.0f * float(i) + 0.25f) << i;
+}
+
+/** Data larger than one storage binding may span: read through a texel buffer, and through windows. */
+TEST(Execute, DataBeyondTheStorageBufferRange) {
+    const std::uint64_t range = device().info().maxStorageBufferRange;
+    if (range >= device().info().maxBufferSize || range > (256u << 20)) {
+        std::cout << "left out: a storage binding of " << range
+                  << " bytes is as large as this test allocates\n";
+        return;
+    }
+    const std::uint64_t bytes = range + (4u << 20);
+    const Kernel write =
+        kernelOf("test/write_far",
+                 "layout(std430, set = 0, binding = 0) writeonly buffer Far { uvec4 values[]; } uFar;",
+                 "uint i = gl_GlobalInvocationID.x; if (i < uFar.values.length()) uFar.values[i] = uvec4(i, "
+                 "1, 2, 3);");
+    const Kernel read =
+        kernelOf("test/read_far",
+                 "layout(set = 0, binding = 0) uniform usamplerBuffer uAll;\n"
+                 "layout(std430, set = 0, binding = 1) writeonly buffer Out { uvec4 values[]; } uOut;",
+                 "int i = int(gl_GlobalInvocationID.x);\n"
+                 "if (i < 64) uOut.values[i] = texelFetch(uAll, textureSize(uAll) - 1 - i);");
+    Graph g(device());
+    const Buffer large = g.buffer("large", {bytes}), out = g.buffer("out", {1024});
+    g.fill("zero", large, 0);
+    g.compute("write", write).writes({{"uFar", large, Window{range, 0}}}).record([](Commands& c) {
+        c.dispatchInvocations((4u << 20) / 16);
+    });
+    g.compute("read", read).reads({{"uAll", large}}).overwrites({{"uOut", out}}).record([](Commands& c) {
+        c.dispatch(1);
+    });
+    auto result = g.readback<std::uint32_t>(out);
+    Plan plan = g.compile();
+    const Values values = result.wait(plan.execute());
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        EXPECT_EQ(values[4 * i], (4u << 20) / 16 - 1 - i);
+        EXPECT_EQ(values[4 * i + 3], 3u);
+    }
 }
 
 TEST(Execute, ImportedImageKeepsItsTexels) {

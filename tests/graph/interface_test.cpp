@@ -300,6 +300,22 @@ TEST(Interface, ImageTooLargeForTheDevice) {
     expectProblem(g, "", "", "image", "1048576x4 texels asked for");
 }
 
+TEST(Interface, ImportFromAnotherDevice) {
+    Device other(test::deviceOptions());
+    DeviceBuffer foreign(other, "foreign", 16);
+    Graph g(device());
+    g.fill("fill", g.import(foreign), 0);
+    expectProblem(g, "", "", "foreign", "is imported from another device");
+}
+
+TEST(Interface, ExecutionsInFlightMustBeOneAtLeast) {
+    TwoBuffers t;
+    t.g.fill("fill", t.b, 1);
+    const auto problems = problemsOf(t.g, {.executionsInFlight = 0});
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(problems[0].message.find("executionsInFlight is 0"), std::string::npos);
+}
+
 struct Recording : TwoBuffers {
     /** The refusal while one iota pass records; the plan then still works. */
     std::string of(std::function<void(Commands&)> recorder) {

@@ -73,7 +73,8 @@ struct Binding {
     Sampling sampling = Sampling::Nearest;
 };
 
-/** What a pass records with while a plan executes. */
+/** What a pass records with while a plan executes. The dispatches of one pass are not ordered among one
+ * another: what one writes and another reads belongs in two passes. */
 class Commands {
 public:
     /** Push constants of the pass's kernel; T's size must equal the kernel's block. They hold until pushed
