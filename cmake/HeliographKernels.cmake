@@ -26,6 +26,14 @@ if(EXISTS ${CMAKE_CURRENT_LIST_DIR}/../engine/shader/CMakeLists.txt)
 elseif(NOT HELIOGRAPH_SHADER_ROOT)
     set(HELIOGRAPH_SHADER_ROOT ${CMAKE_CURRENT_LIST_DIR}/shader_library)
 endif()
+if(NOT _helio_in_tree)
+    # An application's kernel of the same name would take the place of the library's.
+    file(GLOB_RECURSE _helio_taken RELATIVE ${HELIOGRAPH_SHADER_ROOT} ${HELIOGRAPH_SHADER_ROOT}/passes/*.comp)
+    foreach(_helio_source IN LISTS _helio_taken)
+        get_filename_component(_helio_name ${_helio_source} NAME_WE)
+        set_property(GLOBAL PROPERTY helio_kernel_${_helio_name} "Heliograph's own ${_helio_source}")
+    endforeach()
+endif()
 
 # helio_shader_sources(OUT): every file that kernels of the library may include or be, relative to the root.
 function(helio_shader_sources out)
@@ -81,9 +89,9 @@ function(helio_add_kernels target)
                 "${source}; rename one file")
         endif()
         set_property(GLOBAL PROPERTY helio_kernel_${name} ${source})
-        set_property(GLOBAL APPEND PROPERTY helio_kernels "${name}=${source}")
 
         set(spirv ${build}/${pass}/${name}.spv)
+        set_property(GLOBAL APPEND PROPERTY helio_spirv_files ${spirv})
         file(MAKE_DIRECTORY ${build}/${pass})
         add_custom_command(OUTPUT ${spirv}
             COMMAND ${HELIOGRAPH_GLSLANG} -V --target-env vulkan1.3 --quiet -I${root} -I${HELIOGRAPH_SHADER_ROOT}
