@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <tuple>
 
 namespace helio {
@@ -37,6 +38,7 @@ struct Cache {
     std::vector<Result> replaced;
     std::map<std::string, RuntimeSource, std::less<>> runtimeSources;  ///< by Kernel::source
     std::map<std::string, std::unique_ptr<std::string>, std::less<>> names;
+    std::set<const std::uint32_t*> words;  ///< of everything compiled, never freed
     std::atomic<std::uint64_t> compiled{0};
     std::atomic<std::uint64_t> loaded{0};
     std::atomic<std::uint64_t> reused{0};
@@ -110,6 +112,10 @@ std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const
     }
     try {
         const auto result = std::make_shared<const CompiledGlsl>(loadOrCompile(path, glsl, variant, keep));
+        {
+            const std::scoped_lock lock(c.mutex);
+            c.words.insert(result->spirv.data());
+        }
         promise.set_value(result);
         return result;
     } catch (...) {  // out of memory: those who wait get it too, those who come later try again
@@ -118,6 +124,12 @@ std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const
         c.kernels.erase(key);
         throw;
     }
+}
+
+bool isCompiledHere(std::span<const std::uint32_t> spirv) {
+    Cache& c = cache();
+    const std::scoped_lock lock(c.mutex);
+    return c.words.contains(spirv.data());
 }
 
 KernelCacheStatistics kernelCacheStatistics() {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace helio {
@@ -15,6 +16,9 @@ enum class KeepOnDisk : bool { No, Yes };
  * files. What it returns is never freed. Thread-safe. */
 std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const std::string& glsl,
                                                   const KernelVariant& variant, KeepOnDisk keep);
+
+/** Whether compileCached made these words. */
+bool isCompiledHere(std::span<const std::uint32_t> spirv);
 
 struct KernelCacheStatistics {
     std::uint64_t compiled = 0;  ///< times glslang ran

@@ -1,6 +1,8 @@
 #include "engine/shader/reflection.hpp"
 
+#include "engine/shader/kernel_cache.hpp"
 #include "engine/shader/spirv_reader.hpp"
+#include "engine/shader/spirv_validator.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -88,12 +90,19 @@ const KernelReflection& reflect(const Kernel& kernel) {
         const std::scoped_lock lock(mutex);
         if (const auto found = cache->find(key); found != cache->end()) return found->second;
     }
-    KernelReflection reflection = reflectSpirv(kernel.name, kernel.spirv);
+    // SPIRV-Cross trusts its input; validating takes ten times as long, so only what others made is
+    // validated.
+    KernelReflection reflection = isEmbedded(kernel.spirv) || isCompiledHere(kernel.spirv)
+                                      ? SpirvReader(kernel.name, kernel.spirv).read()
+                                      : reflectSpirv(kernel.name, kernel.spirv);
     const std::scoped_lock lock(mutex);
     return cache->emplace(key, std::move(reflection)).first->second;
 }
 
 KernelReflection reflectSpirv(std::string_view name, std::span<const std::uint32_t> spirv) {
+    if (const std::string fault = spirvFault(spirv); !fault.empty()) {
+        throw ShaderError(fmt::format("kernel '{}': its SPIR-V is broken: {}", name, fault));
+    }
     return SpirvReader(name, spirv).read();
 }
 

@@ -90,11 +90,12 @@ struct KernelReflection {
 };
 
 /** Reads a kernel's interface; kept for the process by the kernel's words. Thread-safe. Throws ShaderError,
- * with the kernel's name, where the SPIR-V is broken, is no compute shader, or uses a kind of binding not
+ * with the kernel's name, where the SPIR-V is broken (validated unless the build or
+ * the run-time compiler made it), is no compute shader, or uses a kind of binding not
  * above. */
 const KernelReflection& reflect(const Kernel& kernel);
 
-/** Without keeping it. */
+/** Without keeping it, and always validated. */
 KernelReflection reflectSpirv(std::string_view name, std::span<const std::uint32_t> spirv);
 
 }  // namespace helio

@@ -10,23 +10,6 @@
 namespace helio {
 namespace {
 
-/** SPIRV-Cross trusts instruction lengths; a broken stream must not reach it. */
-std::string streamFault(std::span<const std::uint32_t> spirv) {
-    constexpr std::size_t headerWords = 5;
-    if (spirv.size() < headerWords) return "is too short to be SPIR-V";
-    if (spirv[0] != SpvMagicNumber)
-        return fmt::format("begins with 0x{:08x} and not with SPIR-V's magic number", spirv[0]);
-    const std::uint32_t bound = spirv[3];
-    if (bound == 0 || bound > 0x3fffff) return fmt::format("has an id bound of {}", bound);  // SPIR-V, 2.17
-    for (std::size_t at = headerWords; at < spirv.size();) {
-        const std::uint32_t length = spirv[at] >> 16;
-        if (length == 0 || at + length > spirv.size())
-            return fmt::format("has a broken instruction at word {}", at);
-        at += length;
-    }
-    return {};
-}
-
 Format toFormat(SpvImageFormat format) {
     switch (format) {
         case SpvImageFormatRgba32f:
@@ -144,7 +127,6 @@ std::string capabilityName(SpvCapability capability) {
 }  // namespace
 
 SpirvReader::SpirvReader(std::string_view kernel, std::span<const std::uint32_t> spirv) : kernel_(kernel) {
-    if (const std::string fault = streamFault(spirv); !fault.empty()) fail("its SPIR-V " + fault);
     if (spvc_context_create(&context_) != SPVC_SUCCESS) fail("SPIRV-Cross cannot start");
     try {
         spvc_parsed_ir ir = nullptr;
@@ -238,12 +220,18 @@ std::vector<ReflectedMember> SpirvReader::readMembers(spvc_type structure) const
 KernelReflection SpirvReader::read() {
     if (spvc_compiler_get_execution_model(compiler_) != SpvExecutionModelGLCompute)
         fail("it is no compute shader");
-    KernelReflection out;
-    readBindings(out);
-    readPushConstants(out);
-    readConstants(out);
-    readCapabilities(out);
-    return out;
+    try {
+        KernelReflection out;
+        readBindings(out);
+        readPushConstants(out);
+        readConstants(out);
+        readCapabilities(out);
+        return out;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {  // some functions of the C interface let them through
+        fail(fmt::format("its SPIR-V cannot be read: {}", error.what()));
+    }
 }
 
 void SpirvReader::readBindings(KernelReflection& out) {

@@ -13,7 +13,8 @@ namespace helio {
 /** One module while it is read. */
 class SpirvReader {
 public:
-    /** Parses. Throws ShaderError that begins with the kernel's name. */
+    /** Parses valid words: broken ones can crash SPIRV-Cross (see spirvFault). Throws ShaderError that begins
+     * with the kernel's name. */
     SpirvReader(std::string_view kernel, std::span<const std::uint32_t> spirv);
     ~SpirvReader();
     SpirvReader(const SpirvReader&) = delete;

@@ -1,10 +1,14 @@
 #include "engine/shader/reflection.hpp"
 
+#include "engine/shader/kernel_cache.hpp"
+#include "engine/shader/spirv_validator.hpp"
+
 #include <heliograph/error.hpp>
 
 #include <gtest/gtest.h>
 #include <heliograph_kernels/shader.hpp>
 
+#include <random>
 #include <vector>
 
 namespace helio {
@@ -140,16 +144,60 @@ void expectRefused(std::vector<std::uint32_t> words, const std::string& part) {
 TEST(Reflection, RefusesBrokenSpirv) {
     const std::vector<std::uint32_t> good(shaders::scale_values.spirv.begin(),
                                           shaders::scale_values.spirv.end());
-    expectRefused({}, "too short");
+    expectRefused({}, "its SPIR-V is broken: ");
     expectRefused({1, 2, 3, 4, 5, 6}, "magic number");
-    std::vector<std::uint32_t> cut(good.begin(),
-                                   good.begin() + static_cast<std::ptrdiff_t>(good.size() / 2) + 1);
+    const std::vector<std::uint32_t> cut(good.begin(),
+                                         good.begin() + static_cast<std::ptrdiff_t>(good.size() / 2) + 1);
     EXPECT_THROW(reflectSpirv("broken", cut), ShaderError);
     std::vector<std::uint32_t> zero = good;
     zero[5] = 0;
-    expectRefused(zero, "broken instruction at word 5");
-    std::vector<std::uint32_t> headerOnly(good.begin(), good.begin() + 5);
+    EXPECT_THROW(reflectSpirv("broken", zero), ShaderError);
+    const std::vector<std::uint32_t> headerOnly(good.begin(), good.begin() + 5);
     EXPECT_THROW(reflectSpirv("broken", headerOnly), ShaderError);
+}
+
+/** One to three words changed at random: refused or, where it is still valid, read; never a crash. A fault
+ * that validation let through crashed SPIRV-Cross in 9 of 10 of these. */
+TEST(Reflection, SurvivesRandomDamage) {
+    std::mt19937 random(1);
+    int refused = 0;
+    for (const Kernel* kernel : {&shaders::scale_values, &shaders::interface}) {
+        for (int trial = 0; trial < 1000; ++trial) {
+            std::vector<std::uint32_t> words(kernel->spirv.begin(), kernel->spirv.end());
+            for (std::uint32_t changes = 1 + random() % 3; changes > 0; --changes) {
+                std::uint32_t& word = words[random() % words.size()];
+                switch (random() % 4) {
+                    case 0:
+                        word = static_cast<std::uint32_t>(random());
+                        break;
+                    case 1:
+                        word ^= 1u << (random() % 32);
+                        break;
+                    case 2:
+                        word = static_cast<std::uint32_t>(random() % (kernel->spirv[3] + 10));
+                        break;
+                    default:
+                        word = 0;
+                }
+            }
+            try {
+                reflectSpirv("damaged", words);
+            } catch (const ShaderError&) {
+                ++refused;
+            }
+        }
+    }
+    EXPECT_GT(refused, 1000);
+}
+
+TEST(Reflection, ValidatesWordsOfUnknownOriginOnly) {
+    std::vector<std::uint32_t> words(shaders::interface.spirv.begin(), shaders::interface.spirv.end());
+    EXPECT_TRUE(isEmbedded(shaders::interface.spirv));
+    EXPECT_FALSE(isEmbedded(words));
+    EXPECT_FALSE(isCompiledHere(words));
+    EXPECT_TRUE(isCompiledHere(compileVariant(shaders::interface, {}).spirv));
+    words[40] = 0;
+    EXPECT_THROW(reflect(Kernel{"own", words, ""}), ShaderError);
 }
 
 }  // namespace
