@@ -78,8 +78,10 @@ DeviceImage::DeviceImage(Device& device, std::string name, std::uint32_t width, 
     gpu::translateErrors("clearing image '" + resource.name + "'", [&] {
         const vk::ImageSubresourceRange whole{
             .aspectMask = vk::ImageAspectFlagBits::eColor, .levelCount = 1, .layerCount = 1};
-        const vk::ImageMemoryBarrier2 toGeneral{.srcStageMask = vk::PipelineStageFlagBits2::eNone,
-                                                .srcAccessMask = vk::AccessFlagBits2::eNone,
+        // The memory may have been another resource's a submission ago: the source scope takes up the wait
+        // for it.
+        const vk::ImageMemoryBarrier2 toGeneral{.srcStageMask = vk::PipelineStageFlagBits2::eAllCommands,
+                                                .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
                                                 .dstStageMask = vk::PipelineStageFlagBits2::eAllTransfer,
                                                 .dstAccessMask = vk::AccessFlagBits2::eTransferWrite,
                                                 .oldLayout = vk::ImageLayout::eUndefined,

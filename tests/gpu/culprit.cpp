@@ -29,6 +29,23 @@ TEST(Culprit, MissingBarrier) {
     test::device().impl().queue.submit(std::move(commands));
 }
 
+TEST(Culprit, MissingSemaphore) {
+    // Two submissions past the engine's queue, so that neither waits for the other.
+    Device::Impl& gpu = test::device().impl();
+    DeviceBuffer buffer(test::device(), "raced buffer", 1024);
+    const vk::raii::CommandPool pool(gpu.device, {.queueFamilyIndex = gpu.queue.family()});
+    const vk::raii::CommandBuffers commands(gpu.device, {.commandPool = *pool, .commandBufferCount = 2});
+    for (const vk::raii::CommandBuffer& each : commands) {
+        each.begin({});
+        each.fillBuffer(*buffer.impl()->resource.buffer, 0, 1024, 1);
+        each.end();
+        const vk::CommandBufferSubmitInfo info{.commandBuffer = *each};
+        const vk::raii::Queue queue(gpu.device, gpu.queue.family(), 0);
+        queue.submit2(vk::SubmitInfo2{.commandBufferInfoCount = 1, .pCommandBufferInfos = &info});
+    }
+    gpu.device.waitIdle();
+}
+
 TEST(Culprit, LeaksUntilTheDeviceIsClosed) {
     test::device()
         .impl()

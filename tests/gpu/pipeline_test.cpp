@@ -65,7 +65,11 @@ TEST(ComputePipeline, IsMadeOncePerContent) {
     info.spec = {{0, 6u}};
     const auto other = pipelines.get(info);
     EXPECT_NE(other, first);
-    EXPECT_EQ(pipelines.created(), created + 1);
+    info.spec = {{0, 7u}};
+    EXPECT_NE(pipelines.get(info), other) << "another value of the same constant";
+    info.spec = {{1, 6u}};
+    EXPECT_NE(pipelines.get(info), other) << "another constant of the same value";
+    EXPECT_EQ(pipelines.created(), created + 3);
 }
 
 TEST(ComputePipeline, WithTooManyPushConstantsIsRefusedByName) {

@@ -55,6 +55,7 @@ TEST(Listener, FailsTheTestDuringWhichAMessageCame) {
         {"Innocent", 0, "[  PASSED  ] 1 test."},
         {"WrongCommand", 1, "[  FAILED  ] Culprit.WrongCommand"},
         {"MissingBarrier", 1, "[  FAILED  ] Culprit.MissingBarrier"},
+        {"MissingSemaphore", 1, "vkQueueSubmit2: Hazard WRITE_AFTER_WRITE"},
         {"LeaksUntilTheDeviceIsClosed", 1, "[  FAILED  ] Vulkan validation outside of a test: error: "},
         {"Confesses", 0, "[  PASSED  ] 1 test."},
     };
@@ -72,7 +73,7 @@ TEST(Listener, BlamesOnlyTheCulprit) {
     EXPECT_EQ(finished.status, 1);
     EXPECT_NE(finished.output.find("[       OK ] Culprit.Innocent"), std::string::npos) << finished.output;
     EXPECT_NE(finished.output.find("[       OK ] Culprit.Confesses"), std::string::npos) << finished.output;
-    EXPECT_NE(finished.output.find(" 2 FAILED TESTS"), std::string::npos) << finished.output;
+    EXPECT_NE(finished.output.find(" 3 FAILED TESTS"), std::string::npos) << finished.output;
 }
 
 }  // namespace

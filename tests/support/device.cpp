@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 
@@ -58,6 +59,9 @@ const std::filesystem::path& scratchFolder() {
 
 int runAllWithDevice() {
     scratchFolder();
+    // The layer also follows accesses from one submission to the next, over semaphores, when told so; Debian
+    // 12's has no other way to tell it. Read when an instance is made.
+    ::setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 1);
     gpu::observeValidation([](const std::string& message) {
         const std::lock_guard lock(mutex);
         pending.push_back(message);
