@@ -9,8 +9,8 @@ namespace helio {
 /** Variance of the mean per pixel, R G B and 0, under the sampler that made the film. The film's own variance
  * supposes independent samples and is too large for stratified ones, by a factor that differs from place to
  * place. The half difference has the right expectation but one degree of freedom. So the film's variance is
- * scaled by the ratio of the two sums over 7 x 7 pixels and the three channels, drawn towards the image's
- * ratio as if by 16 pixels more. Without two halves it is the film's. */
+ * scaled by the mean ratio of the two over 7 x 7 pixels, drawn towards the image's mean ratio as if by 16
+ * pixels more. Without two halves it is the film's. */
 std::vector<float> varianceOfMean(const FilmImages& images);
 
 }  // namespace helio

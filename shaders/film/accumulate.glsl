@@ -98,11 +98,14 @@ FN Vec3 filmVarianceOfMean(FilmPixel p) {
 /// (mean A - mean B) sqrt(a b) / (a + b), half the difference where the halves count alike. 0 without both.
 FN Vec3 filmHalfDifference(FilmPixel p) {
     Real n = filmCount(p);
-    bool both = p.countA > REAL(0.0) && p.countB > REAL(0.0);
-    Vec3 meanA = p.sumA / max(p.countA, REAL(1.0));
-    Vec3 meanB = p.sumB / max(p.countB, REAL(1.0));
-    Vec3 low = p.sumALow / max(p.countA, REAL(1.0)) - p.sumBLow / max(p.countB, REAL(1.0));
-    return both ? ((meanA - meanB) + low) * (sqrt(p.countA * p.countB) / n) : Vec3(0.0);
+    if (p.countA < REAL(1.0) || p.countB < REAL(1.0)) return Vec3(0.0);
+    // mean A - mean B = (A - B - (a - b) mean B) / a: sums that nearly cancel are subtracted without rounding.
+    Vec3 hi = p.sumA;
+    Vec3 lo = p.sumALow;
+    addToDoubleSingle(hi, lo, -p.sumB);
+    addToDoubleSingle(hi, lo, -p.sumBLow);
+    Vec3 meanB = p.sumB / p.countB;
+    return ((hi - meanB * (p.countA - p.countB)) + lo) / p.countA * (sqrt(p.countA * p.countB) / n);
 }
 
 /// Starts gathering for a pixel whose stored state is p.
