@@ -29,7 +29,8 @@ helio::Scene makeScene() {
 
     const auto square = [](float half, float height, bool facingUp, int material) {
         Primitive primitive;
-        primitive.positions = {{-half, height, -half}, {half, height, -half}, {half, height, half}, {-half, height, half}};
+        primitive.positions = {
+            {-half, height, -half}, {half, height, -half}, {half, height, half}, {-half, height, half}};
         primitive.indices = facingUp ? std::vector<std::uint32_t>{0, 2, 1, 0, 3, 2}
                                      : std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3};
         primitive.material = material;
@@ -50,7 +51,8 @@ helio::Scene makeScene() {
 
 void report(const char* what, const helio::RenderResult& result) {
     std::printf("%s: %u spp, %.3f s, relMSE %.3g [%.3g, %.3g]%s\n", what, result.samples, result.seconds,
-                result.error.relmse, result.error.low, result.error.high, result.cancelled ? ", cancelled" : "");
+                result.error.relmse, result.error.low, result.error.high,
+                result.cancelled ? ", cancelled" : "");
 }
 
 }  // namespace

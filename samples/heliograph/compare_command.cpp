@@ -49,7 +49,8 @@ ImageF differenceImage(const ImageF& image, const ImageF& reference, double wors
 }
 
 /** METRIC=VALUE pairs that a comparison exceeds. NaN exceeds every limit. */
-std::vector<std::string> exceeded(const std::vector<std::string>& limits, const nlohmann::ordered_json& metrics) {
+std::vector<std::string> exceeded(const std::vector<std::string>& limits,
+                                  const nlohmann::ordered_json& metrics) {
     std::vector<std::string> result;
     for (const std::string& limit : limits) {
         const std::size_t equals = limit.find('=');
@@ -62,12 +63,13 @@ std::vector<std::string> exceeded(const std::vector<std::string>& limits, const 
         }
         const bool known = metric == "worst" || (metrics.contains(metric) && metrics[metric].is_number());
         if (!known) {
-            throw CLI::ValidationError(
-                "--fail-above", "there is no metric '" + metric +
-                                    "'; there are mse, rmse, relmse, mean_ratio, worst, nan, inf");
+            throw CLI::ValidationError("--fail-above",
+                                       "there is no metric '" + metric +
+                                           "'; there are mse, rmse, relmse, mean_ratio, worst, nan, inf");
         }
         const double actual = (metric == "worst" ? metrics["worst"]["error"] : metrics[metric]).get<double>();
-        if (!(actual <= value)) result.push_back(fmt::format("{} is {:g}, above {:g}", metric, actual, value));
+        if (!(actual <= value))
+            result.push_back(fmt::format("{} is {:g}, above {:g}", metric, actual, value));
     }
     return result;
 }
@@ -81,9 +83,11 @@ int compare(const CompareArguments& arguments) {
     if (arguments.json) {
         fmt::print("{}\n", metrics.dump(2));
     } else {
-        fmt::print("mse {:.6g}\nrmse {:.6g}\nrelmse {:.6g}\nmean_ratio {:.6g}\nworst {:.6g} at ({}, {})\nnan {}\ninf {}\n",
-                   difference.mse, difference.rmse, difference.relmse, difference.meanRatio,
-                   difference.worstError, difference.worstX, difference.worstY, difference.nan, difference.inf);
+        fmt::print(
+            "mse {:.6g}\nrmse {:.6g}\nrelmse {:.6g}\nmean_ratio {:.6g}\nworst {:.6g} at ({}, {})\nnan "
+            "{}\ninf {}\n",
+            difference.mse, difference.rmse, difference.relmse, difference.meanRatio, difference.worstError,
+            difference.worstX, difference.worstY, difference.nan, difference.inf);
     }
     if (!arguments.output.empty()) {
         saveImage(arguments.output, differenceImage(image, reference, difference.worstError));
@@ -100,9 +104,11 @@ void addCompareCommand(CLI::App& app, Command& run) {
     command->add_option("IMAGE", arguments->image, "Image to judge")->required();
     command->add_option("REFERENCE", arguments->reference, "What it should be")->required();
     command->add_flag("--json", arguments->json, "Print the figures as JSON");
-    command->add_option("--fail-above", arguments->limits,
-                        "METRIC=VALUE: exit 1 where the metric is above (mse, rmse, relmse, mean_ratio, worst, nan, inf)");
-    command->add_option("-o,--output", arguments->output, "Write an image of the difference, scaled to its maximum");
+    command->add_option(
+        "--fail-above", arguments->limits,
+        "METRIC=VALUE: exit 1 where the metric is above (mse, rmse, relmse, mean_ratio, worst, nan, inf)");
+    command->add_option("-o,--output", arguments->output,
+                        "Write an image of the difference, scaled to its maximum");
     command->callback([arguments, &run] { run = [arguments] { return compare(*arguments); }; });
 }
 

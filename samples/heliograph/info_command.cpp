@@ -18,7 +18,8 @@ using Json = nlohmann::ordered_json;
 Json describeDevice(const DeviceInfo& device) {
     Json capabilities = Json::array();
     for (const Capability& capability : device.capabilities) {
-        Json entry = {{"name", capability.name}, {"present", capability.present}, {"required", capability.required}};
+        Json entry = {
+            {"name", capability.name}, {"present", capability.present}, {"required", capability.required}};
         if (!capability.value.empty()) entry["value"] = capability.value;
         if (!capability.present) entry["switches_off"] = capability.whenMissing;
         capabilities.push_back(entry);
@@ -43,8 +44,9 @@ void printDevice(std::size_t index, const DeviceInfo& device) {
                device.driverVersion, device.apiVersion, device.usable ? "" : "  REFUSED: " + device.refusal);
     for (const Capability& capability : device.capabilities) {
         fmt::print("      {:<3} {:<34} {}\n", capability.present ? "yes" : "no", capability.name,
-                   capability.present ? capability.value
-                                      : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
+                   capability.present
+                       ? capability.value
+                       : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
     }
 }
 
@@ -110,7 +112,8 @@ int info(const std::string& source, bool json) {
     }
     const std::vector<DeviceInfo> devices = listDevices();
     if (json) {
-        Json result = {{"version", std::string(version())}, {"devices", Json::array()}, {"samples", sampleNames()}};
+        Json result = {
+            {"version", std::string(version())}, {"devices", Json::array()}, {"samples", sampleNames()}};
         for (const DeviceInfo& device : devices) result["devices"].push_back(describeDevice(device));
         fmt::print("{}\n", result.dump(2));
         return Done;
@@ -134,7 +137,8 @@ void addInfoCommand(CLI::App& app, Command& run) {
         app.add_subcommand("info", "List the devices, or what a scene holds, needs and would skip");
     command->add_option("SCENE", arguments->scene, "A file or sample:NAME");
     command->add_flag("--json", arguments->json, "Print JSON");
-    command->callback([arguments, &run] { run = [arguments] { return info(arguments->scene, arguments->json); }; });
+    command->callback(
+        [arguments, &run] { run = [arguments] { return info(arguments->scene, arguments->json); }; });
 }
 
 }  // namespace helio::cli

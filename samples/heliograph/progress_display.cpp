@@ -1,9 +1,9 @@
 #include "progress_display.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
-#include <unistd.h>
 
 namespace helio::cli {
 namespace {
@@ -20,7 +20,9 @@ std::string describe(const Progress& progress) {
 
 ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressDisplay::~ProgressDisplay() { finish(); }
+ProgressDisplay::~ProgressDisplay() {
+    finish();
+}
 
 void ProgressDisplay::update(const Progress& progress) {
     if (quiet_) return;

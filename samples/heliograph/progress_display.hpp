@@ -1,5 +1,6 @@
 #pragma once
-/** @file How a running render is shown: a line that is rewritten on a terminal, a few whole lines elsewhere. */
+/** @file How a running render is shown: a line that is rewritten on a terminal, a few whole lines elsewhere.
+ */
 #include <heliograph/renderer.hpp>
 
 #include <string>

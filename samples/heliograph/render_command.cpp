@@ -2,10 +2,12 @@
 #include "progress_display.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/features.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <fstream>
@@ -59,7 +61,8 @@ Environment parseEnvironment(const std::string& text) {
     for (int channel = 0; channel < 3; ++channel) {
         const std::size_t comma = rest.find(',');
         if ((comma == std::string_view::npos) != (channel == 2)) {
-            throw CLI::ValidationError("--environment", "'" + text + "' is not R,G,B; image environments are not there yet");
+            throw CLI::ValidationError("--environment",
+                                       "'" + text + "' is not R,G,B; image environments are not there yet");
         }
         const float value = parseNumber<float>(rest.substr(0, comma), "--environment",
                                                "R,G,B; image environments are not there yet");
@@ -78,12 +81,14 @@ void checkOutput(const std::filesystem::path& file, bool image) {
         std::string extension = file.extension().string();
         for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
         if (extension != ".exr" && extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
-            throw InputError(file.string(), "", "unknown image type '" + extension + "'", "use .exr, .png or .jpg");
+            throw InputError(file.string(), "", "unknown image type '" + extension + "'",
+                             "use .exr, .png or .jpg");
         }
     }
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     if (!std::filesystem::is_directory(folder)) {
-        throw InputError(file.string(), "", "the folder does not exist", "create '" + folder.string() + "' first");
+        throw InputError(file.string(), "", "the folder does not exist",
+                         "create '" + folder.string() + "' first");
     }
     if (std::filesystem::is_directory(file)) {
         throw InputError(file.string(), "", "is a folder", "name a file");
@@ -98,28 +103,49 @@ void writeText(const std::filesystem::path& file, const std::string& text) {
         std::ofstream stream(partial, std::ios::binary);
         stream << text;
         stream.flush();
-        if (!stream) throw InputError(file.string(), "", "cannot be written", "check the folder's permissions and space");
+        if (!stream)
+            throw InputError(file.string(), "", "cannot be written",
+                             "check the folder's permissions and space");
     }
     std::filesystem::rename(partial, file);
 }
 
-void printSummary(const RenderArguments& arguments, const RenderResult& result) {
+/** What the scene asked for and was not done, a line each; what it did not ask for, in one line. */
+void printSkipped(const Scene& scene, const RenderResult& result) {
+    const std::vector<SceneFeatures::Absent> absent = SceneFeatures(scene).absent();
+    std::string unneeded;
+    for (const auto& [what, why] : result.skipped) {
+        const bool notAsked =
+            std::any_of(absent.begin(), absent.end(),
+                        [&name = what](const SceneFeatures::Absent& a) { return a.name == name; });
+        if (notAsked) {
+            unneeded += (unneeded.empty() ? "" : ", ") + what;
+        } else {
+            fmt::print("left out {}: {}\n", what, why);
+        }
+    }
+    if (!unneeded.empty()) fmt::print("unneeded {}\n", unneeded);
+}
+
+void printSummary(const RenderArguments& arguments, const Scene& scene, const RenderResult& result) {
     const std::string error = result.error.reliable
-                                  ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})", result.error.relmse,
-                                                result.error.low, result.error.high)
+                                  ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})",
+                                                result.error.relmse, result.error.low, result.error.high)
                                   : fmt::format("{:.3g} (not reliable)", result.error.relmse);
     for (const std::string& output : arguments.outputs) fmt::print("wrote {}\n", output);
     if (arguments.outputs.empty()) fmt::print("no -o FILE was given: no image was written\n");
     fmt::print("device   {}\n", result.device);
     fmt::print("time     {:.3f} s rendering, {:.3f} s set-up\n", result.seconds, result.setupSeconds);
-    fmt::print("samples  {} per pixel, {}x{} pixels\n", result.samples, result.image.width, result.image.height);
+    fmt::print("samples  {} per pixel, {}x{} pixels\n", result.samples, result.image.width,
+               result.image.height);
     if (arguments.options.pipeline == Pipeline::Path) {
         const RayCounts& rays = result.rays;
         const double total = double(rays.camera + rays.bounce + rays.shadow);
-        fmt::print("rays     {:.3g} M, {:.2f} M/s\n", total * 1e-6, result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
+        fmt::print("rays     {:.3g} M, {:.2f} M/s\n", total * 1e-6,
+                   result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
         fmt::print("error    relMSE {}\n", error);
     }
-    for (const auto& [what, why] : result.skipped) fmt::print("skipped  {}: {}\n", what, why);
+    printSkipped(scene, result);
 }
 
 int render(RenderArguments& arguments) {
@@ -151,12 +177,15 @@ int render(RenderArguments& arguments) {
     for (const std::string& output : arguments.outputs) save(output, result);
     if (!arguments.stats.empty()) writeText(arguments.stats, result.json() + "\n");
     if (!arguments.graph.empty()) writeText(arguments.graph, renderer.graphviz());
-    for (const std::string& warning : result.warnings) fmt::print(stderr, "heliograph: warning: {}\n", warning);
-    if (!arguments.quiet) printSummary(arguments, result);
+    for (const std::string& warning : result.warnings)
+        fmt::print(stderr, "heliograph: warning: {}\n", warning);
+    if (!arguments.quiet) printSummary(arguments, scene, result);
     if (arguments.validate) {
         const std::vector<std::string> messages = renderer.device().validationMessages();
-        for (const std::string& message : messages) fmt::print(stderr, "heliograph: validation: {}\n", message);
-        if (!messages.empty()) throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
+        for (const std::string& message : messages)
+            fmt::print(stderr, "heliograph: validation: {}\n", message);
+        if (!messages.empty())
+            throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
     }
     return result.cancelled && interrupted != 0 ? Interrupted : Done;
 }
@@ -186,23 +215,31 @@ void addRenderCommand(CLI::App& app, Command& run) {
     auto arguments = std::make_shared<RenderArguments>();
     RenderOptions& options = arguments->options;
     CLI::App* command = app.add_subcommand("render", "Render a scene");
-    command->add_option("SCENE", arguments->scene, "A .gltf or .glb file, or sample:NAME (see heliograph info)")
+    command
+        ->add_option("SCENE", arguments->scene, "A .gltf or .glb file, or sample:NAME (see heliograph info)")
         ->required();
-    command->add_option("-o,--output", arguments->outputs,
-                        "Image to write, may be repeated: .exr linear with every channel, .png or .jpg sRGB")
+    command
+        ->add_option("-o,--output", arguments->outputs,
+                     "Image to write, may be repeated: .exr linear with every channel, .png or .jpg sRGB")
         ->allow_extra_args(false);
-    addChoice<Pipeline>(command, "--pipeline", options.pipeline,
-                        {{"path", Pipeline::Path}, {"raster", Pipeline::Raster}},
-                        "path (default): unbiased path tracing; raster: z-buffer, direct light without shadows");
-    command->add_option("--size", arguments->size, "Pixels, WxH; the vertical field of view is kept")->capture_default_str();
+    addChoice<Pipeline>(
+        command, "--pipeline", options.pipeline, {{"path", Pipeline::Path}, {"raster", Pipeline::Raster}},
+        "path (default): unbiased path tracing; raster: z-buffer, direct light without shadows");
+    command->add_option("--size", arguments->size, "Pixels, WxH; the vertical field of view is kept")
+        ->capture_default_str();
     command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
     command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
-    command->add_option("--spp", options.samples, "Samples per pixel")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
-    command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")->check(CLI::PositiveNumber);
-    command->add_option("--max-error", options.maxError, "Stop when the upper bound of the relMSE is below this")
+    command->add_option("--spp", options.samples, "Samples per pixel")
+        ->check(CLI::Range(1u, 1u << 24))
+        ->capture_default_str();
+    command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")
         ->check(CLI::PositiveNumber);
-    command->add_option("--max-depth", options.maxDepth,
-                        "Scatterings at most: 0 emission only, 1 direct light; default unlimited (65536)")
+    command
+        ->add_option("--max-error", options.maxError, "Stop when the upper bound of the relMSE is below this")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--max-depth", options.maxDepth,
+                     "Scatterings at most: 0 emission only, 1 direct light; default unlimited (65536)")
         ->check(CLI::Range(0, 65536));
     addChoice<PixelFilter>(command, "--filter", options.filter,
                            {{"box", PixelFilter::Box},
@@ -217,11 +254,13 @@ void addRenderCommand(CLI::App& app, Command& run) {
     addChoice<bool>(command, "--cull", options.cullBackFaces, {{"none", false}, {"back", true}},
                     "none (default) or back: faces the raster pipeline leaves out");
     command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
-    command->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
+    command
+        ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
         ->capture_default_str();
     command->add_option("--stats", arguments->stats, "Write the statistics as JSON");
     command->add_option("--graph", arguments->graph, "Write the render graph for Graphviz");
-    command->add_flag("--validate", arguments->validate, "Run under Vulkan validation; a message is a failure");
+    command->add_flag("--validate", arguments->validate,
+                      "Run under Vulkan validation; a message is a failure");
     command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
     command->callback([arguments, &run] { run = [arguments] { return render(*arguments); }; });
 }
