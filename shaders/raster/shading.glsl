@@ -97,9 +97,8 @@ vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
     if (HAS_AREA_LIGHTS) {
         float height = -dot(facing.xyz, corner);
         bool seen = (strength.w < 0.0 ? abs(height) : height) > facing.w;
-        vec3 b = corner + edge1, d = corner + edge2;
         bool triangle = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE;
-        float factor = quadIrradiance(normal, corner, b, triangle ? b : b + edge2, d);
+        float factor = quadIrradiance(normal, corner, edge1, triangle ? edge1 : edge1 + edge2, edge2);
         vec3 radiance = strength.rgb;
         if (HAS_EMISSION_TEXTURES) {
             // One value for the whole light: the texture over all of the triangle.
