@@ -68,12 +68,15 @@ double fractal(double x, double y, int octaves) {
  * smooth. */
 double ridged(double x, double y) {
     double sum = 0, amplitude = 0.55, weight = 1;
-    for (int i = 0; i < 7; ++i) {
-        const double ridge = 1 - std::abs(noise(x, y));
+    double rounding = 0.06;  // of |noise| at 0, over about two cells of the grid: a crease would have no normal
+    for (int i = 0; i < 6; ++i) {
+        const double n = noise(x, y);
+        const double ridge = 1 + rounding - std::sqrt(n * n + rounding * rounding);
         const double signal = ridge * ridge * weight;
         sum += amplitude * signal;
         weight = std::clamp(signal * 1.5, 0.0, 1.0);
         amplitude *= 0.44;
+        rounding *= 2.07;
         x = 2.07 * x + 3.3;
         y = 2.07 * y + 9.2;
     }
