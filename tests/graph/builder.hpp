@@ -94,32 +94,4 @@ public:
     }
 };
 
-/** Names of the passes that run, in order. */
-inline std::vector<std::string> livePasses(const Input& input, const Compiled& compiled) {
-    std::vector<std::string> names;
-    for (const Step& step : compiled.steps)
-        if (step.kind == StepKind::Pass) names.push_back(input.passes[step.index].name);
-    return names;
-}
-
-/** The step that runs the named pass; null where it was culled. */
-inline const Step* stepOf(const Input& input, const Compiled& compiled, const std::string& name) {
-    for (const Step& step : compiled.steps)
-        if (step.kind == StepKind::Pass && input.passes[step.index].name == name) return &step;
-    return nullptr;
-}
-
-inline const Placement* placementOf(const Compiled& compiled, std::uint32_t resource) {
-    for (const Placement& placement : compiled.placements)
-        if (placement.resource == resource) return &placement;
-    return nullptr;
-}
-
-inline bool shareMemory(const Compiled& compiled, std::uint32_t a, std::uint32_t b) {
-    const Placement* x = placementOf(compiled, a);
-    const Placement* y = placementOf(compiled, b);
-    return x && y && x->arena == y->arena && x->offset < y->offset + y->bytes &&
-           y->offset < x->offset + x->bytes;
-}
-
 }  // namespace helio::graph
