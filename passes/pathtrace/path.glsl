@@ -37,6 +37,7 @@ struct ShadowRay {
     vec3 origin;
     vec3 direction;  ///< not unit: the light is at distance 1 (or infinite)
     float limit;     ///< 0 where there is nothing to ask
+    ivec2 target;    ///< range of g that the ray goes to
     vec3 radiance;
 };
 
@@ -74,13 +75,14 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     const vec2 choice = sample2D(SAMPLER_KIND, numbers, dimension + 2u);
     const vec3 start = s.position + s.face * s.offset;
 
-    shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0));
+    shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if ((NEXT_EVENT && HAS_AREA_LIGHTS) || HAS_PUNCTUAL_LIGHTS) {
         const LightSample light = sampleLight(s.position, choice.x, sample2D(SAMPLER_KIND, numbers, dimension));
         const float cosine = dot(s.shading, light.direction);
         const float scattered = cosine * INV_PI;
         const float weight = light.density > 0.0 ? light.density / (light.density + scattered) : 1.0;
         shadow.radiance = path.throughput * albedo * light.radiance * (scattered * weight);
+        shadow.target = light.triangles;
         shadow.direction = light.infinite ? light.direction : light.target - start;
         const bool asks = alive && cosine > 0.0 && dot(s.face, light.direction) > 0.0 &&
                           largestOf(light.radiance) > 0.0;

@@ -43,11 +43,11 @@ struct DeviceCounters {
 };
 static_assert(sizeof(DeviceCounters) == 48);
 
-const std::vector<std::string_view> kSurfaceBuffers = {
-    "uTriangles", "uNodes",    "uNormals", "uTexcoords",  "uColors",
-    "uMaterials", "uTextures", "uTexels8", "uTexelsFloat"};
-const std::vector<std::string_view> kSurfaceConstants = {
-    "HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_FLOAT_TEXTURES", "TRIANGLE_COUNT"};
+const std::vector<std::string_view> kSurfaceBuffers = {"uTriangles", "uNodes",   "uNormals",
+                                                       "uTexcoords", "uColors",  "uMaterials",
+                                                       "uTextures",  "uTexels8", "uTexelsFloat"};
+const std::vector<std::string_view> kSurfaceConstants = {"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES",
+                                                         "HAS_FLOAT_TEXTURES", "TRIANGLE_COUNT"};
 
 /** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
 std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size) {

@@ -109,7 +109,7 @@ void main() {
         ShadowRay shadow;
         bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, parameters.environment.xyz, shadow, cut);
         bool blocked;
-        const int shadowTurns = occluded(shadow.origin, shadow.direction, path.source, shadow.limit, blocked);
+        const int shadowTurns = occluded(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked);
         path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance : vec3(0.0);
 
         shadowRays += shadow.limit > 0.0 ? 1u : 0u;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace helio {
@@ -93,9 +94,18 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
                                 glm::floatBitsToUint(lights[i].z), glm::floatBitsToUint(lights[i].w));
         text += ")\n";
     }
+    // Slots are in scene order, so that a slot is a g; only lights are ever a shadow ray's target.
+    std::set<std::size_t> lightTriangles;
+    for (std::size_t row = 0; row + kLightTexels <= lights.size(); row += kLightTexels)
+        if (glm::floatBitsToUint(lights[row + 2].w) <= std::uint32_t(LightKind::Parallelogram))
+            lightTriangles.insert(glm::floatBitsToUint(lights[row + 5].x));
+    const auto notTarget = [&](std::size_t slot) {
+        return lightTriangles.contains(slot) ? fmt::format(" && target.x != {}", slot) : std::string();
+    };
     text +=
         "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n"
-        "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int slot) {\n"
+        "void testAll(vec3 origin, vec3 direction, int source, ivec2 target, inout float nearest, out int "
+        "slot) {\n"
         "    const RayShear ray = shearOf(origin, direction);\n"
         "    slot = -1;\n"
         "    float t;\n"
@@ -112,20 +122,20 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
             std::array<std::string, 4> q;
             for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
             text += fmt::format(
-                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && source != "
-                "{};\n"
+                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && "
+                "source != {}{}{};\n"
                 "    nearest = hit ? t : nearest;\n"
                 "    slot = hit ? (second ? {} : {}) : slot;\n",
-                q[0], q[1], q[2], q[3], i, i + 1, i + 1, i);
+                q[0], q[1], q[2], q[3], i, i + 1, notTarget(i), notTarget(i + 1), i + 1, i);
             ++i;
         } else {
             std::array<std::string, 3> p;
             for (std::size_t c = 0; c < 3; ++c) p[c] = name(corners(i).at[c]);
             text += fmt::format(
-                "    hit = meetsTriangle(ray, {}, {}, {}, nearest, t) && source != {};\n"
+                "    hit = meetsTriangle(ray, {}, {}, {}, nearest, t) && source != {}{};\n"
                 "    nearest = hit ? t : nearest;\n"
                 "    slot = hit ? {} : slot;\n",
-                p[0], p[1], p[2], i, i);
+                p[0], p[1], p[2], i, notTarget(i), i);
         }
     }
     text += "}\n#endif\n";

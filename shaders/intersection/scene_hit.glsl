@@ -7,29 +7,33 @@
 // Defines testAll() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).
 #include "generated.glsl"
 
+/** A target that no triangle belongs to. */
+const ivec2 NO_TARGET = ivec2(1, 0);
+
 /** Nearest triangle along the ray: its slot, -1 for none, and its distance. Returns turns of loops taken. */
 int closestHit(vec3 origin, vec3 direction, int source, out float distance, out int slot) {
     distance = INFINITE_DISTANCE;
     slot = -1;
     if (TRIANGLE_COUNT == 0) return 0;
 #ifdef UNROLLED_SCENE
-    testAll(origin, direction, source, distance, slot);
+    testAll(origin, direction, source, NO_TARGET, distance, slot);
     return 0;
 #else
-    return traverse(origin, direction, false, source, distance, slot);
+    return traverse(origin, direction, false, source, NO_TARGET, distance, slot);
 #endif
 }
 
-/** Whether anything lies within (0, limit) along the ray; limit <= 0 asks nothing. */
-int occluded(vec3 origin, vec3 direction, int source, float limit, out bool hit) {
+/** Whether anything lies within (0, limit) along the ray; limit <= 0 asks nothing. What the ray leaves (slot)
+ * and what it goes to (range of g) do not count: rounding cannot make a light shadow itself. */
+int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit, out bool hit) {
     hit = false;
     if (TRIANGLE_COUNT == 0) return 0;
     float nearest = limit;
     int slot, steps = 0;
 #ifdef UNROLLED_SCENE
-    testAll(origin, direction, source, nearest, slot);
+    testAll(origin, direction, source, target, nearest, slot);
 #else
-    steps = traverse(origin, direction, true, source, nearest, slot);
+    steps = traverse(origin, direction, true, source, target, nearest, slot);
 #endif
     hit = slot >= 0;
     return steps;

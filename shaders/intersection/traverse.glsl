@@ -44,9 +44,9 @@ uint orderedMask(uint mask, uint octant) {
 }
 
 /** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`
- * becomes its distance, `slot` its slot (-1: none). `source`: slot that the ray leaves and cannot meet again.
- * A ray with nearest <= 0 does nothing. Returns the turns taken. */
-int traverse(vec3 origin, vec3 direction, const bool any, int source, inout float nearest, out int slot) {
+ * becomes its distance, `slot` its slot (-1: none). `source`: slot that the ray leaves and cannot meet again;
+ * `target`: range of triangles (g) that it goes to and that do not stand in its way. A ray with nearest <= 0 does nothing. Returns the turns taken. */
+int traverse(vec3 origin, vec3 direction, const bool any, int source, ivec2 target, inout float nearest, out int slot) {
     slot = -1;
     const vec3 inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
     const bvec3 negative = lessThan(inverse, vec3(0.0));
@@ -112,11 +112,13 @@ int traverse(vec3 origin, vec3 direction, const bool any, int source, inout floa
         if (leafMask != 0u) {
             const int candidate = int(leafBase) + findLSB(leafMask);
             leafMask &= leafMask - 1u;
-            const vec3 a = sheared(ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3).xyz));
+            const uvec4 first = texelFetch(uTriangles, candidate * 3);
+            const vec3 a = sheared(ray, uintBitsToFloat(first.xyz));
             const vec3 b = sheared(ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 1).xyz));
             const vec3 c = sheared(ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 2).xyz));
             float t;
-            const bool hit = meetsTriangle(ray, a, b, c, nearest, t) && candidate != source;
+            bool hit = meetsTriangle(ray, a, b, c, nearest, t) && candidate != source;
+            if (any) hit = hit && (int(first.w) < target.x || int(first.w) > target.y);
             nearest = hit ? t : nearest;
             slot = hit ? candidate : slot;
             if (any && hit) {

@@ -35,6 +35,7 @@ struct LightSample {
     vec3 direction;     ///< unit, from the receiver to the light
     vec3 radiance;      ///< estimate of the integral over the light: L / density over solid angle, or the
                         ///< irradiance across the direction for a punctual light, each over the chance
+    ivec2 triangles;    ///< first and last g of the light; (1, 0) for a punctual one
     float density;      ///< over solid angle; 0 for a punctual light, which no ray finds
 };
 
@@ -58,7 +59,7 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
     const vec4 facing = uintBitsToFloat(LIGHT_ROW(first, 4));
     const uint kind = edge2Bits.w;
 
-    LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), 0.0);
+    LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), ivec2(1, 0), 0.0);
     if (HAS_AREA_LIGHTS) {
         // The unit square folded along its diagonal covers a triangle evenly.
         const bool fold = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE && u.x + u.y > 1.0;
@@ -75,8 +76,9 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
         const bool visible = towards > 0.0 && squared > 0.0;
         result.density = visible ? abs(strength.w) * squared / towards : 0.0;
         result.radiance = visible ? strength.rgb / result.density : vec3(0.0);
+        const uvec4 identity = LIGHT_ROW(first, 5);
+        result.triangles = ivec2(int(identity.x), int(identity.x) + (kind == LIGHT_PARALLELOGRAM ? 1 : 0));
         if (HAS_EMISSION_TEXTURES) {
-            const uvec4 identity = LIGHT_ROW(first, 5);
             const int g = int(identity.x), material = int(identity.y);
             // Only whole triangles carry textures (parallelograms are merged where emission is constant).
             const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
@@ -90,6 +92,7 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
         result.direction = toLight * inversesqrt(max(squared, 1e-37));
         result.target = directional ? result.direction : corner.xyz;
         result.infinite = directional;
+        result.triangles = ivec2(1, 0);
         result.density = 0.0;
         float attenuation = directional ? 1.0 : 1.0 / max(squared, 1e-37);
         if (kind == LIGHT_SPOT) {
