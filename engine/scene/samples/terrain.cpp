@@ -68,7 +68,7 @@ double fractal(double x, double y, int octaves) {
  * smooth. */
 double ridged(double x, double y) {
     double sum = 0, amplitude = 0.55, weight = 1;
-    double rounding = 0.06;  // of |noise| at 0, over about two cells of the grid: a crease would have no normal
+    double rounding = 0.02;  // of |noise| at 0, over about a cell of the grid: a crease would have no normal
     for (int i = 0; i < 6; ++i) {
         const double n = noise(x, y);
         const double ridge = 1 + rounding - std::sqrt(n * n + rounding * rounding);
@@ -76,7 +76,7 @@ double ridged(double x, double y) {
         sum += amplitude * signal;
         weight = std::clamp(signal * 1.5, 0.0, 1.0);
         amplitude *= 0.44;
-        rounding *= 2.07;
+        rounding *= 1.7;
         x = 2.07 * x + 3.3;
         y = 2.07 * y + 9.2;
     }
@@ -90,7 +90,8 @@ double height(double u, double v) {
     const double distance = std::sqrt(x * x + y * y) + 0.55 * fractal(1.4 * x - 3.1, 1.4 * y + 8.8, 4);
     const double island = 1 - std::clamp((distance - 0.15) / 0.75, 0.0, 1.0);
     const double shape = island * island * (3 - 2 * island);
-    return peak * (shape * ridged(1.9 * x + bend + 11.5, 1.9 * y - bend + 4.1) - 0.045);
+    const double ridges = ridged(1.9 * x + bend + 11.5, 1.9 * y - bend + 4.1);
+    return peak * (shape * ridges * (0.45 + 0.75 * ridges) - 0.045);
 }
 
 struct Heightfield {
@@ -108,6 +109,38 @@ struct Heightfield {
     }
 };
 
+/** Lowers what is steeper than rock stands (about 60 degrees): each point to at most its neighbours' height
+ * and the slope between, by sweeps from two opposite corners. */
+void slump(Heightfield& field) {
+    constexpr double rise = 1.7 * side / cells, diagonal = 1.41421356 * rise;
+    const auto sweep = [&](int i, int j, int back) {
+        double& h = field.heights[std::size_t(j) * (cells + 1) + std::size_t(i)];
+        h = std::min({h, field.at(i - back, j) + rise, field.at(i, j - back) + rise,
+                      field.at(i - back, j - back) + diagonal, field.at(i + back, j - back) + diagonal});
+    };
+    for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= cells; ++i) sweep(i, j, 1);
+    }
+    for (int j = cells; j >= 0; --j) {
+        for (int i = cells; i >= 0; --i) sweep(i, j, -1);
+    }
+}
+
+/** One step of (1 2 1) / 4 along each axis: takes off edges that the grid has no room for. */
+Heightfield smoothed(const Heightfield& field) {
+    Heightfield result;
+    result.heights.reserve(field.heights.size());
+    const auto row = [&](int i, int j) {
+        return field.at(i - 1, j) + 2 * field.at(i, j) + field.at(i + 1, j);
+    };
+    for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= cells; ++i) {
+            result.heights.push_back((row(i, j - 1) + 2 * row(i, j) + row(i, j + 1)) / 16);
+        }
+    }
+    return result;
+}
+
 Heightfield makeHeights() {
     Heightfield field;
     field.heights.reserve(std::size_t(cells + 1) * (cells + 1));
@@ -115,6 +148,8 @@ Heightfield makeHeights() {
         for (int i = 0; i <= cells; ++i)
             field.heights.push_back(height(double(i) / cells, double(j) / cells));
     }
+    slump(field);
+    field = smoothed(field);
     field.flatness.reserve(field.heights.size());
     for (int j = 0; j <= cells; ++j) {
         for (int i = 0; i <= cells; ++i) field.flatness.push_back(field.normal(i, j).y);
@@ -159,7 +194,7 @@ glm::dvec3 cover(double h, double flatness, double patch, double grain) {
     const glm::dvec3 rock(0.20, 0.175, 0.155), snow(0.82, 0.84, 0.88);
     glm::dvec3 color = glm::mix(sand, grass, step(2, 7, h + 4 * patch));
     color = glm::mix(color, wood, step(-0.12, 0.08, patch) * step(9, 18, h) * (1 - step(70, 95, h)));
-    color = glm::mix(color, rock * (1 + 0.4 * patch), step(0.80, 0.66, flatness + 0.08 * patch));
+    color = glm::mix(color, rock * (1 + 0.4 * patch), step(0.72, 0.57, flatness + 0.08 * patch));
     color = glm::mix(color, rock, step(78, 110, h + 30 * patch));
     color = glm::mix(color, snow, step(98, 122, h + 40 * patch) * step(0.52, 0.70, flatness + 0.1 * patch));
     if (h < 0) color = glm::mix(color, glm::dvec3(0.05, 0.08, 0.07), step(0, -8, h));
