@@ -33,14 +33,18 @@ std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
 
 }  // namespace
 
+void requireRasterCapabilities(const DeviceInfo& device) {
+    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"})
+        if (!device.has(needed))
+            throw DeviceError(fmt::format(
+                "{} lacks {}, which the rasterizer needs; use the path pipeline or another device",
+                device.name, needed));
+}
+
 RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& options)
     : options_(options), maxStorageBufferRange_(device.info().maxStorageBufferRange) {
     assert(options.batch > 0);
-    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"})
-        if (!device.info().has(needed))
-            throw DeviceError(fmt::format(
-                "{} lacks {}, which the rasterizer needs; use the path pipeline or another device",
-                device.info().name, needed));
+    requireRasterCapabilities(device.info());
     // A record is 64 bytes and all of a batch must be in reach of one binding; indirect dispatches have at
     // most 65,535 workgroups of 64.
     const std::uint64_t records =

@@ -59,9 +59,12 @@ struct RasterOutput {
     Buffer counters;
 };
 
+/** Throws DeviceError where the device lacks 64-bit integers, 64-bit buffer atomics or doubles. */
+void requireRasterCapabilities(const DeviceInfo& device);
+
 class RasterPipeline {
 public:
-    /** Throws DeviceError where the device lacks 64-bit integers, 64-bit buffer atomics or doubles. */
+    /** Throws DeviceError: see requireRasterCapabilities. */
     explicit RasterPipeline(const Device& device, const RasterOptions& options = {});
 
     /** Declares the passes. `view` is read at every execution: its camera may change between two, its size

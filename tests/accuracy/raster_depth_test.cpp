@@ -217,6 +217,22 @@ TEST(RasterDepth, OrthographicViews) {
     EXPECT_FLOAT_EQ(std::bit_cast<float>(std::uint32_t(one.keys[kWidth * kHeight / 2] >> 32)), 0.5f);
 }
 
+TEST(RasterCapabilities, ADeviceWithoutThemIsNamedWithWhatItLacks) {
+    EXPECT_NO_THROW(requireRasterCapabilities(device().info()));
+    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"}) {
+        DeviceInfo info = device().info();
+        for (Capability& capability : info.capabilities)
+            if (capability.name == needed) capability.present = false;
+        try {
+            requireRasterCapabilities(info);
+            ADD_FAILURE() << needed;
+        } catch (const DeviceError& error) {
+            EXPECT_NE(std::string(error.what()).find(needed), std::string::npos);
+            EXPECT_NE(std::string(error.what()).find(info.name), std::string::npos);
+        }
+    }
+}
+
 TEST(RasterView, PixelsOfACamera) {
     // 36 x 24 mm film behind 50 mm: 26.99146656 degrees, 50/24 image heights of focal length.
     Camera camera;

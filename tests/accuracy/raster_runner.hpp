@@ -28,7 +28,7 @@ struct RasterResult {
 class RasterRunner {
 public:
     RasterRunner(std::uint32_t width, std::uint32_t height, std::uint32_t capacity,
-                 const RasterOptions& options = {})
+                 const RasterOptions& options = {}, const CompileOptions& compile = {})
         : view_(std::make_shared<RasterView>()),
           capacity_(capacity),
           buffer_(device(), "triangles", std::uint64_t(capacity) * sizeof(RasterTriangle)) {
@@ -39,7 +39,7 @@ public:
             RasterPipeline(device(), options).declare(graph, {graph.import(buffer_), capacity}, view_);
         keys_ = graph.readback<std::uint64_t>(output.visibility);
         counters_ = graph.readback<RasterCounters>(output.counters);
-        plan_ = graph.compile();
+        plan_ = graph.compile(compile);
     }
 
     RasterResult run(const RasterView& view, std::vector<RasterTriangle> triangles) {

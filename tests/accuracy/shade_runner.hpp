@@ -44,7 +44,7 @@ inline ShadedImage shade(const Scene& scene, const RasterView& view, bool tree =
                normal = graph.readback<glm::vec4>(output.normal);
     const auto ids = graph.readback<glm::ivec2>(output.ids);
     const auto keys = graph.readback<std::uint64_t>(raster.visibility);
-    Plan plan = graph.compile();
+    Plan plan = graph.compile({.poison = true});
     const Execution done = plan.execute();
     return {view.width,        color.wait(done), albedo.wait(done),
             normal.wait(done), ids.wait(done),   keys.wait(done)};
