@@ -1,5 +1,7 @@
 #include "engine/graph/interface.hpp"
 
+#include "engine/graph/kernel_capabilities.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -110,6 +112,12 @@ public:
         if (interface_.reflection) {
             checkUndeclared();
             checkSpec();
+            for (const std::string& name : missingCapabilities(*interface_.reflection, graph_.device->facts))
+                problems_.push_back({pass_.name, "", "",
+                                     fmt::format("has a kernel, '{}', that asks for {}, which the device "
+                                                 "lacks or the engine leaves off; "
+                                                 "choose a variant without it",
+                                                 pass_.kernel.name, name)});
         }
         if (!pass_.recorder)
             problems_.push_back({pass_.name, "", "", "records nothing; give it record() with a dispatch"});

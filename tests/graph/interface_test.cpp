@@ -1,5 +1,7 @@
 /** @file What is refused of passes against their kernels' SPIR-V and the device's limits, at compile and
  * while recording. Every problem names pass, binding, resource and remedy. */
+#include "engine/gpu/device_impl.hpp"
+#include "engine/graph/kernel_capabilities.hpp"
 #include "tests/graph/kernels.hpp"
 #include "tests/support/device.hpp"
 
@@ -298,6 +300,28 @@ TEST(Interface, ImageTooLargeForTheDevice) {
         .keep()
         .record(nothing);
     expectProblem(g, "", "", "image", "1048576x4 texels asked for");
+}
+
+TEST(Interface, CapabilityThatTheDeviceLacks) {
+    // Judged on made-up facts, so that it is tested on every device; then what this device has compiles.
+    const Kernel kernel =
+        kernelOf("test/clustered",
+                 "#extension GL_KHR_shader_subgroup_clustered : require\n"
+                 "layout(std430, set = 0, binding = 0) writeonly buffer Out { uint values[]; } uOut;",
+                 "uOut.values[gl_GlobalInvocationID.x] = subgroupClusteredAdd(1u, 4u);");
+    gpu::DeviceFacts facts = device().impl().facts;
+    facts.properties11.subgroupSupportedOperations = vk::SubgroupFeatureFlagBits::eBasic;
+    EXPECT_EQ(graph::missingCapabilities(reflect(kernel), facts),
+              std::vector<std::string>{"GroupNonUniformClustered"});
+    facts.properties11.subgroupSupportedOperations |= vk::SubgroupFeatureFlagBits::eClustered;
+    EXPECT_TRUE(graph::missingCapabilities(reflect(kernel), facts).empty());
+
+    TwoBuffers t;
+    t.g.compute("p", kernel).writes({{"uOut", t.b}}).record(nothing);
+    if (graph::missingCapabilities(reflect(kernel), device().impl().facts).empty())
+        EXPECT_TRUE(problemsOf(t.g).empty());
+    else
+        expectProblem(t.g, "p", "", "", "asks for GroupNonUniformClustered, which the device lacks");
 }
 
 TEST(Interface, ImportFromAnotherDevice) {
