@@ -167,17 +167,27 @@ TEST(RasterDepth, ReversedDepthTellsNeighboursApartAtEveryDistance) {
 }
 
 TEST(RasterDepth, FarFromTheOriginNothingChanges) {
-    // Eye and corners moved by a million; corners are on a grid that floats hold there too.
-    RasterView view = pixelView(kWidth, kHeight);
+    // Eye and corners moved by a million; corners are on a grid that floats hold there too. The camera is
+    // turned, so that a transform that adds large products loses digits.
+    const glm::dvec3 forward = glm::normalize(glm::dvec3(0.3, -0.2, -1)),
+                     across = glm::normalize(glm::cross(forward, glm::dvec3(0.1, 1, 0)));
+    RasterView view;
+    view.width = kWidth;
+    view.height = kHeight;
+    view.rowW = forward;
+    view.rowX = 211.0 * across + 0.5 * kWidth * forward;
+    view.rowY = -211.0 * glm::cross(across, forward) + 0.5 * kHeight * forward;
+    view.depthOffset = 1e-3;
     RasterRunner runner(kWidth, kHeight, 400);
     Random random(21);
     std::vector<RasterTriangle> list, moved;
     const glm::vec3 shift(1048576.0f, -1048576.0f, 524288.0f);
     for (std::uint32_t i = 0; i < 400; ++i) {
         glm::vec3 v[3];
+        const glm::dvec3 centre(random.uniform(-60, 60), random.uniform(-40, 40), random.uniform(-60, -5));
         for (auto& corner : v)
-            corner = glm::vec3(glm::round(glm::dvec3(random.uniform(-200, 2000), random.uniform(-1300, 200),
-                                                     random.uniform(-9, -1)) *
+            corner = glm::vec3(glm::round((centre + glm::dvec3(random.uniform(-8, 8), random.uniform(-8, 8),
+                                                               random.uniform(-8, 8))) *
                                           8.0) /
                                8.0);
         list.push_back(triangle(v[0], v[1], v[2], i));

@@ -1,6 +1,8 @@
 /** @file Shading of the visibility buffer: closed forms of irradiance, exact attributes, channels. */
+#include "passes/raster/push.hpp"
 #include "tests/accuracy/shade_runner.hpp"
 
+#include <heliograph/kernel.hpp>
 #include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
@@ -284,6 +286,118 @@ TEST(ShadeAttributes, PerspectiveCorrectAgainstTheRayPlane) {
                 affine);
     EXPECT_LT(worst, 4e-6);
     EXPECT_GT(affine, 0.1);
+}
+
+/** Level of detail and derivatives of (u, v) as shading takes them, for every pixel of a key buffer. */
+const char* const kDerivativeKernel = R"(#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/raster/surface.glsl"
+#include "shaders/texture/trilinear.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer uResult { vec4 result[]; };
+layout(set = 0, binding = 2, std430) writeonly buffer uLevel { float level[]; };
+layout(set = 0, binding = 3) uniform samplerBuffer uUv;
+void main() {
+    ivec2 size = imageSizePixels(), pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= size.x || pixel.y >= size.y) return;
+    int index = pixel.y * size.x + pixel.x;
+    bool hit = (visibility[index].x | visibility[index].y) != 0u;
+    int g = hit ? int(~visibility[index].x) : 0;
+    Surface surface = surfaceAt(fetchTriangle(g), pixel);
+    vec2 uv0 = texelFetch(uUv, 3 * g).xy, e1 = texelFetch(uUv, 3 * g + 1).xy - uv0, e2 = texelFetch(uUv, 3 * g + 2).xy - uv0;
+    vec2 dx = surface.db1.x * e1 + surface.db2.x * e2, dy = surface.db1.y * e1 + surface.db2.y * e2;
+    result[index] = hit ? vec4(dx, dy) : vec4(0.0);
+    level[index] = hit ? mipLevel(vec2(1024.0, 512.0), dx, dy) : -1.0;
+})";
+
+TEST(ShadeAttributes, DerivativesAndLevelOfATiltedPlane) {
+    const Kernel kernel = compileKernel("test/derivatives", kDerivativeKernel);
+    double worst = 0, worstLevel = 0;
+    std::size_t hits = 0;
+    for (const bool orthographic : {false, true})
+        for (const double tilt : {0.2, 1.0, 1.45}) {
+            const glm::dvec3 right(std::cos(0.4), std::sin(0.4), 0), centre(0.1, -0.05, -3);
+            const glm::dvec3 along =
+                std::cos(tilt) * glm::dvec3(-right.y, right.x, 0) + std::sin(tilt) * glm::dvec3(0, 0, -1);
+            std::vector<glm::vec4> triangles, uv;
+            const std::array<glm::dvec2, 4> corners = {glm::dvec2(-2, -2), glm::dvec2(2, -2),
+                                                       glm::dvec2(2, 2), glm::dvec2(-2, 2)};
+            for (const auto& [g, order] :
+                 {std::pair{0u, std::array{0, 1, 2}}, std::pair{1u, std::array{0, 2, 3}}})
+                for (int k = 0; k < 3; ++k) {
+                    const glm::dvec2 c = corners[std::size_t(order[std::size_t(k)])];
+                    triangles.emplace_back(glm::vec3(centre + c.x * right + c.y * along),
+                                           glm::uintBitsToFloat(k == 0 ? g : 0u));
+                    uv.emplace_back(c.x * 0.25f + 0.5f, c.y * 0.25f + 0.5f, 0, 0);
+                }
+            auto view = std::make_shared<RasterView>();
+            view->width = 160;
+            view->height = 120;
+            view->rowW = {0, 0, -1};
+            view->orthographic = orthographic;
+            const double focal = orthographic ? 40 : 120;
+            view->rowX = {focal, 0, orthographic ? 0 : -80};
+            view->rowY = {0, -focal, orthographic ? 0 : -60};
+            view->depthOffset = orthographic ? 1 : 1e-6;
+            view->depthSlope = -0.01;
+
+            DeviceBuffer triangleBuffer = makeBuffer(device(), "triangles", triangles),
+                         uvBuffer = makeBuffer(device(), "uv", uv);
+            Graph graph(device());
+            const Buffer source = graph.import(triangleBuffer);
+            const RasterOutput raster = RasterPipeline(device()).declare(graph, {source, 2}, view);
+            const Buffer result = graph.buffer("result", {160 * 120 * 16}),
+                         levels = graph.buffer("level", {160 * 120 * 4});
+            graph.compute("derivatives", kernel)
+                .reads({{"uVisibility", raster.visibility},
+                        {"uTriangles", source},
+                        {"uUv", graph.import(uvBuffer)}})
+                .overwrites({{"uResult", result}, {"uLevel", levels}})
+                .record([view](Commands& c) {
+                    c.push(makeRasterPush(*view, 0, 0, 0)).dispatchOver(view->width, view->height);
+                });
+            const auto derivatives = graph.readback<glm::vec4>(result);
+            const auto level = graph.readback<float>(levels);
+            Plan plan = graph.compile();
+            const Execution done = plan.execute();
+            const auto values = derivatives.wait(done);
+            const auto levelValues = level.wait(done);
+
+            // (u, v) of a point of the screen: the plane itself, met by the pixel's ray; derivatives by
+            // central differences.
+            const auto uvAt = [&](double x, double y) {
+                const glm::dvec3 n = glm::cross(right, along);
+                const glm::dvec3 at((x - 80) / focal, -(y - 60) / focal, 0);
+                const glm::dvec3 origin = orthographic ? at : glm::dvec3(0),
+                                 direction = orthographic ? glm::dvec3(0, 0, -1) : at + glm::dvec3(0, 0, -1);
+                const glm::dvec3 p =
+                    origin + direction * (glm::dot(centre - origin, n) / glm::dot(direction, n)) - centre;
+                return glm::dvec2(glm::dot(p, right) * 0.25 + 0.5, glm::dot(p, along) * 0.25 + 0.5);
+            };
+            for (std::uint32_t y = 0; y < 120; ++y)
+                for (std::uint32_t x = 0; x < 160; ++x) {
+                    const std::size_t i = y * 160 + x;
+                    if (levelValues[i] < 0) continue;
+                    ++hits;
+                    constexpr double h = 1e-3;
+                    const glm::dvec2 dx = (uvAt(x + 0.5 + h, y + 0.5) - uvAt(x + 0.5 - h, y + 0.5)) / (2 * h);
+                    const glm::dvec2 dy = (uvAt(x + 0.5, y + 0.5 + h) - uvAt(x + 0.5, y + 0.5 - h)) / (2 * h);
+                    const double scale = glm::length(dx) + glm::length(dy);
+                    for (int c = 0; c < 2; ++c)
+                        worst = std::max({worst, std::abs(values[i][c] - dx[c]) / scale,
+                                          std::abs(values[i][c + 2] - dy[c]) / scale});
+                    const glm::dvec2 texels(1024, 512);
+                    const double expected = std::max(
+                        0.0, std::log2(std::max(glm::length(dx * texels), glm::length(dy * texels))));
+                    worstLevel = std::max(worstLevel, std::abs(levelValues[i] - expected));
+                }
+        }
+    std::printf("             %zu pixels, derivatives off by %.1e, levels by %.1e\n", hits, worst,
+                worstLevel);
+    EXPECT_GT(hits, 10000u);
+    EXPECT_LT(worst, 1e-6);
+    EXPECT_LT(worstLevel, 1e-5);
 }
 
 /** A textured floor of 64 x 64 texels, one unit wide. */
