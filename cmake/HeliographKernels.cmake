@@ -91,7 +91,7 @@ function(helio_add_kernels target)
         set_property(GLOBAL PROPERTY helio_kernel_${name} ${source})
 
         set(spirv ${build}/${pass}/${name}.spv)
-        set_property(GLOBAL APPEND PROPERTY helio_spirv_files ${spirv})
+        set_property(TARGET ${target} APPEND PROPERTY helio_spirv_files ${spirv})
         file(MAKE_DIRECTORY ${build}/${pass})
         add_custom_command(OUTPUT ${spirv}
             COMMAND ${HELIOGRAPH_GLSLANG} -V --target-env vulkan1.3 --quiet -I${root} -I${HELIOGRAPH_SHADER_ROOT}
