@@ -210,6 +210,11 @@ bool PathTracer::advance(std::uint32_t sampleEnd) {
     return impl_->advance(sampleEnd);
 }
 
+void PathTracer::setTurnBudget(std::uint32_t turns) {
+    assert(turns >= 1 && turns <= 33000);
+    impl_->options_.turnBudget = turns;
+}
+
 PathCounters PathTracer::counters() const {
     const DeviceCounters& c = impl_->last_;
     return {c.camera, c.bounce, c.shadow, c.cut, c.abandoned};

@@ -78,6 +78,9 @@ public:
      * samples more than were reached before, and 2^24 in all. */
     bool advance(std::uint32_t sampleEnd);
 
+    /** Loop turns of the next dispatches, see PathTraceOptions::turnBudget: how long one takes. */
+    void setTurnBudget(std::uint32_t turns);
+
     PathCounters counters() const;
     FirstHits firstHits();
 

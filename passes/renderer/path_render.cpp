@@ -15,7 +15,7 @@ namespace {
 class PathLoop {
 public:
     PathLoop(PathTracer& tracer, FilmTarget& target, RenderJob& job)
-        : tracer_(tracer), target_(target), job_(job), schedule_(job.options) {}
+        : tracer_(tracer), target_(target), job_(job), schedule_(job.options), budget_(job.options) {}
 
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
@@ -32,7 +32,10 @@ private:
     /** Traces to the end of a batch; false where the application cancels. */
     bool trace(std::uint32_t end, std::uint32_t reached) {
         for (bool done = false; !done;) {
+            tracer_.setTurnBudget(budget_.turns());
+            const double start = job_.seconds();
             done = tracer_.advance(end);
+            budget_.took(job_.seconds() - start);
             if (!job_.notify(progress(done ? end : reached)) && !done) return false;
         }
         return true;
@@ -77,6 +80,7 @@ private:
     FilmTarget& target_;
     RenderJob& job_;
     SampleSchedule schedule_;
+    TurnBudget budget_;
     double relmse_ = -1;
 };
 

@@ -5,8 +5,9 @@
 namespace helio {
 namespace {
 
-constexpr std::uint64_t firstBatchPaths = 1u << 22;  // about a second where tracing is quick
-constexpr std::uint32_t longestBatch = 1024;         // samples per pixel; the film takes 4096
+constexpr std::uint64_t firstBatchPaths = 1u << 22;    // about a second where tracing is quick
+constexpr std::uint32_t longestBatch = 1024;           // samples per pixel; the film takes 4096
+constexpr double fewestTurns = 64, mostTurns = 30000;  // of PathTracer
 
 }  // namespace
 
@@ -36,6 +37,19 @@ std::uint32_t SampleSchedule::next(std::uint32_t reached, double seconds) const 
         if (affordable < double(end - reached)) end = reached + std::uint64_t(affordable);
     }
     return std::uint32_t(std::min<std::uint64_t>(end, samples_));
+}
+
+TurnBudget::TurnBudget(const RenderOptions& options) {
+    const double pixels = double(options.size[0]) * options.size[1];
+    // Every dispatch loads and stores a few hundred bytes of state per pixel, up to 0.2 microseconds: a
+    // tenth.
+    target_ = std::max(0.1, 2e-6 * pixels);
+    turns_ = std::clamp(target_ / (pixels * 40e-9), fewestTurns, mostTurns);  // a first guess
+}
+
+void TurnBudget::took(double seconds) {
+    const double change = std::clamp(target_ / std::max(seconds, 1e-6), 0.25, 4.0);
+    turns_ = std::clamp(turns_ * change, fewestTurns, mostTurns);
 }
 
 }  // namespace helio

@@ -23,4 +23,18 @@ private:
     double growth_, maxSeconds_;
 };
 
+/** Loop turns of a dispatch, so that one takes long enough for its fixed costs and short enough for progress,
+ * cancelling, and the watchdogs of devices that draw a desktop. Where paths pause does not change a render's
+ * bits, so that this may depend on speed. */
+class TurnBudget {
+public:
+    explicit TurnBudget(const RenderOptions& options);
+    std::uint32_t turns() const { return std::uint32_t(turns_); }
+    /** Tells how long a dispatch of turns() took. */
+    void took(double seconds);
+
+private:
+    double turns_, target_;  ///< seconds
+};
+
 }  // namespace helio
