@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 namespace helio {
 namespace {
@@ -14,8 +15,13 @@ namespace {
 /** The loop over batches, and what is told about it. */
 class PathLoop {
 public:
-    PathLoop(PathTracer& tracer, FilmTarget& target, RenderJob& job)
-        : tracer_(tracer), target_(target), job_(job), schedule_(job.options), budget_(job.options) {}
+    PathLoop(PathTracer& tracer, FilmTarget& target, RenderJob& job, bool cpuDevice)
+        : tracer_(tracer),
+          target_(target),
+          job_(job),
+          cpuDevice_(cpuDevice),
+          schedule_(job.options),
+          budget_(job.options) {}
 
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
@@ -33,12 +39,21 @@ private:
     bool trace(std::uint32_t end, std::uint32_t reached) {
         for (bool done = false; !done;) {
             tracer_.setTurnBudget(budget_.turns());
-            const double start = job_.seconds();
+            const Stopwatch watch;
             done = tracer_.advance(end);
-            budget_.took(job_.seconds() - start);
+            budget_.took(ownSeconds(watch));
             if (!job_.notify(progress(done ? end : reached)) && !done) return false;
         }
         return true;
+    }
+
+    /** Wall time; on a CPU device no more than its own share of a machine that has other work too, which
+     * would only make dispatches short and dear. */
+    double ownSeconds(const Stopwatch& watch) const {
+        const double wall = watch.seconds();
+        if (!cpuDevice_) return wall;
+        const double cores = std::max(1u, std::thread::hardware_concurrency());
+        return std::min(wall, 1.25 * watch.cpuSeconds() / cores);
     }
 
     /** Whether nothing more is to be done; estimates the error where somebody wants to know it. */
@@ -79,6 +94,7 @@ private:
     PathTracer& tracer_;
     FilmTarget& target_;
     RenderJob& job_;
+    bool cpuDevice_;
     SampleSchedule schedule_;
     TurnBudget budget_;
     double relmse_ = -1;
@@ -147,7 +163,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     const std::vector<PassTiming> compiling = tracer.timings();
     job.beginRendering();
 
-    result.samples = PathLoop(tracer, target, job).run();
+    result.samples = PathLoop(tracer, target, job, device.info().type == "cpu").run();
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
     job.finish();

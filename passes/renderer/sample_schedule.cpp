@@ -43,8 +43,8 @@ TurnBudget::TurnBudget(const RenderOptions& options) {
     const double pixels = double(options.size[0]) * options.size[1];
     // Every dispatch loads and stores a few hundred bytes of state per pixel, up to 0.2 microseconds: a
     // tenth.
-    target_ = std::max(0.1, 2e-6 * pixels);
-    turns_ = std::clamp(target_ / (pixels * 40e-9), fewestTurns, mostTurns);  // a first guess
+    target_ = std::max(0.15, 4e-6 * pixels);
+    turns_ = std::clamp(target_ / (pixels * 10e-9), fewestTurns, mostTurns);  // a first guess
 }
 
 void TurnBudget::took(double seconds) {
