@@ -1,6 +1,7 @@
 // Sums and products with the error they make, and what is built on them: a b - c d, quadratic equations. By
-// splitting (Veltkamp, Dekker 1971), not by fma, which only some devices fuse. Exact while nothing overflows and
-// no product's low half falls below the normal range: factors between about 1e-15 and 1e18 are always safe.
+// splitting (Veltkamp, Dekker 1971), not by fma, which only some devices fuse. Exact while nothing overflows
+// and no product's low half falls below the normal range: factors between about 1e-15 and 1e18 are always
+// safe.
 #ifndef SHADERS_SHARED_ERROR_FREE_GLSL
 #define SHADERS_SHARED_ERROR_FREE_GLSL
 #include "shaders/shared/real.glsl"

@@ -1,6 +1,7 @@
-// exp, log, pow and their kin, the same on every device that rounds +, -, * as IEEE does. Coefficients are minimax
-// fits (Remez exchange, each rounded to float before the next was fitted). Errors stated are the worst found by
-// tests/accuracy over every float of the domain, in units in the last place (ULP) of the exact result.
+// exp, log, pow and their kin, the same on every device that rounds +, -, * as IEEE does. Coefficients are
+// minimax fits (Remez exchange, each rounded to float before the next was fitted). Errors stated are the
+// worst over every normal float of the domain, in units in the last place (ULP) of the exact result:
+// tests/accuracy, exhaustively.
 #ifndef SHADERS_SHARED_EXPONENTIAL_GLSL
 #define SHADERS_SHARED_EXPONENTIAL_GLSL
 #include "shaders/shared/float_bits.glsl"
@@ -31,7 +32,7 @@ FN Real expReduce(Real x, OUT(int) n) {
     return r;
 }
 
-/// e^x. exp(-inf) = 0, exp(+inf) = inf, NaN gives NaN.
+/// e^x. exp(-inf) = 0, exp(+inf) = inf, NaN gives NaN. 0.998 ULP.
 FN Real realExp(Real x) {
     int n;
     // Beyond these ends the result is 0 or infinity anyway.
@@ -41,7 +42,7 @@ FN Real realExp(Real x) {
     return isnan(x) ? x : y;
 }
 
-/// 2^x; exact for integers.
+/// 2^x; exact for integers. 0.998 ULP.
 FN Real realExp2(Real x) {
     Real c = isnan(x) ? 0.0 : clamp(x, -151.0, 129.0);
     Real k = roundEven(c);
@@ -51,7 +52,7 @@ FN Real realExp2(Real x) {
     return isnan(x) ? x : y;
 }
 
-/// e^x - 1 without cancellation near 0. expm1(-inf) = -1; the sign of zero is kept.
+/// e^x - 1 without cancellation near 0. expm1(-inf) = -1; the sign of zero is kept. 1.64 ULP.
 FN Real realExpm1(Real x) {
     int n;
     Real r = expReduce(isnan(x) ? 0.0 : clamp(x, -104.0, 89.0), n);
@@ -73,8 +74,8 @@ FN Real logReduce(Real x, OUT(int) k) {
     return uintBitsToFloat(bits - (uint(e) << 23)) - 1.0;
 }
 
-/// log(1 + f) = f - half + s (half + R) with half = f^2/2 and s = f / (2 + f), from 2 atanh(s) = log((1+s)/(1-s)):
-/// the leading f is exact, so that nothing cancels near 1. Returns all but f.
+/// log(1 + f) = f - half + s (half + R) with half = f^2/2 and s = f / (2 + f), from 2 atanh(s) =
+/// log((1+s)/(1-s)): the leading f is exact, so that nothing cancels near 1. Returns all but f.
 FN Real logTail(Real f) {
     precise Real s = f / (2.0 + f);
     Real z = s * s;
@@ -91,7 +92,7 @@ FN Real logSpecial(Real x, Real y) {
     return isnan(x) || x == infinity() ? x : y;
 }
 
-/// Natural logarithm. log(0) = -inf, log of a negative number NaN.
+/// Natural logarithm. log(0) = -inf, log of a negative number NaN. 0.91 ULP.
 FN Real realLog(Real x) {
     int k;
     Real f = logReduce(x, k);
@@ -99,7 +100,7 @@ FN Real realLog(Real x) {
     return logSpecial(x, y);
 }
 
-/// log(1 + x) without cancellation near 0. log1p(-1) = -inf; the sign of zero is kept.
+/// log(1 + x) without cancellation near 0. log1p(-1) = -inf; the sign of zero is kept. 0.91 ULP.
 FN Real realLog1p(Real x) {
     precise Real u = 1.0 + x;
     // What rounding u lost, exactly: the smaller summand minus what arrived of it.
@@ -112,7 +113,7 @@ FN Real realLog1p(Real x) {
     return abs(x) < REAL(2e-8) ? x : y;
 }
 
-/// Base-2 logarithm; exact for powers of two.
+/// Base-2 logarithm; exact for powers of two. 0.97 ULP.
 FN Real realLog2(Real x) {
     int k;
     Real f = logReduce(x, k);
@@ -156,7 +157,8 @@ FN Real log2InTwoParts(Real x, OUT(Real) tail) {
     return sum;
 }
 
-/// x^y for x > 0, both finite.
+/// x^y for x > 0, both finite; two thirds of the time of realPow. 1.12 ULP in 2e7 random bases and exponents
+/// with normal results, bases next to 1 with exponents up to 1e8 among them.
 FN Real powPositive(Real x, Real y) {
     Real tail;
     Real head = log2InTwoParts(x, tail);
@@ -174,7 +176,8 @@ FN Real powPositive(Real x, Real y) {
     return scaleByPowerOfTwo(z, int(k));
 }
 
-/// x^y with C's special values: pow(x, 0) = pow(1, y) = 1 even for NaN; a negative x needs an integer y, else NaN.
+/// x^y with C's special values: pow(x, 0) = pow(1, y) = 1 even for NaN; a negative x needs an integer y, else
+/// NaN. Errors as powPositive.
 FN Real realPow(Real x, Real y) {
     Real magnitude = abs(x);
     bool yInteger = floor(y) == y;

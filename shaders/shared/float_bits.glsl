@@ -17,7 +17,8 @@ FN Real copySign(Real magnitude, Real signSource) {
     return uintBitsToFloat((floatBitsToUint(magnitude) & ~SIGN_BIT) | (floatBitsToUint(signSource) & SIGN_BIT));
 }
 
-/// magnitude with its sign flipped where signSource is negative: magnitude * sign(signSource) without a product.
+/// magnitude with its sign flipped where signSource is negative: magnitude * sign(signSource) without a
+/// product.
 FN Real multiplySign(Real magnitude, Real signSource) {
     return uintBitsToFloat(floatBitsToUint(magnitude) ^ (floatBitsToUint(signSource) & SIGN_BIT));
 }

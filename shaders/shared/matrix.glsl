@@ -1,27 +1,28 @@
-// Determinants, inverses and cofactors of 3x3 and 4x4 matrices by minors computed without cancellation, so that the
-// error stays within a small multiple of the condition number even where cancellation is worst (Hilbert matrices).
-// Product and transpose are the languages' own operators. Matrices are m[column][row].
+// Determinants, inverses and cofactors of 3x3 and 4x4 matrices by minors computed without cancellation, so
+// that the error stays within a small multiple of the condition number even where cancellation is worst
+// (Hilbert matrices). Product and transpose are the languages' own operators. Matrices are m[column][row].
 #ifndef SHADERS_SHARED_MATRIX_GLSL
 #define SHADERS_SHARED_MATRIX_GLSL
 #include "shaders/shared/error_free.glsl"
 #include "shaders/shared/real.glsl"
 
-/// The matrix of cofactors: det(m) times the inverse transposed, there for singular m too. It takes normals along
-/// with the tangents that m takes, scaled by the area's growth.
+/// The matrix of cofactors: det(m) times the inverse transposed, there for singular m too. It takes normals
+/// along with the tangents that m takes, scaled by the area's growth.
 FN Mat3 cofactorMatrix(Mat3 m) {
     return Mat3(crossAccurate(m[1], m[2]), crossAccurate(m[2], m[0]), crossAccurate(m[0], m[1]));
 }
 
 FN Real determinantAccurate(Mat3 m) { return dotAccurate(m[0], crossAccurate(m[1], m[2])); }
 
-/// The inverse; a singular matrix gives infinities or NaN. Relative error below 4 u kappa(m) in the Frobenius norm.
+/// The inverse; a singular matrix gives infinities or NaN. Relative error below 4 u kappa(m) in the Frobenius
+/// norm.
 FN Mat3 inverseAccurate(Mat3 m) {
     Mat3 c = cofactorMatrix(m);
     return transpose(c) * (1.0 / dotAccurate(m[0], c[0]));
 }
 
-/// a . b for a vector a of floats and b in two parts: with minors kept in twice the precision, what cancels between
-/// them is not lost.
+/// a . b for a vector a of floats and b in two parts: with minors kept in twice the precision, what cancels
+/// between them is not lost.
 FN Real dotTwoParts(Vec3 a, Vec3 high, Vec3 low) {
     Real e0, e1, e2, s1, s2;
     Real p = twoProduct(a.x, high.x, e0);

@@ -9,7 +9,8 @@
 #include "shaders/shared/real.glsl"
 #include "shaders/shared/trigonometry.glsl"
 
-/// [l, r] x [b, t] x [f, n] to [-1, 1]^3: centre to 0, then scale. (The lecture's printed translation repeats a row.)
+/// [l, r] x [b, t] x [f, n] to [-1, 1]^3: centre to 0, then scale. (The lecture's printed translation repeats
+/// a row.)
 FN Mat4 cubeOrthographic(Real l, Real r, Real b, Real t, Real n, Real f) {
     return Mat4(2.0 / (r - l), 0.0, 0.0, 0.0,  //
                 0.0, 2.0 / (t - b), 0.0, 0.0,  //
@@ -17,8 +18,8 @@ FN Mat4 cubeOrthographic(Real l, Real r, Real b, Real t, Real n, Real f) {
                 -((r + l) / (r - l)), -((t + b) / (t - b)), -((n + f) / (n - f)), 1.0);
 }
 
-/// Squeezes the frustum into the box of its near plane: (x, y, z) -> (n x / z, n y / z, n + f - n f / z). Planes n and
-/// f stay, what lies between moves towards f. w = z, which is negative in front.
+/// Squeezes the frustum into the box of its near plane: (x, y, z) -> (n x / z, n y / z, n + f - n f / z).
+/// Planes n and f stay, what lies between moves towards f. w = z, which is negative in front.
 FN Mat4 cubeSquish(Real n, Real f) {
     return Mat4(n, 0.0, 0.0, 0.0,  //
                 0.0, n, 0.0, 0.0,  //
@@ -58,7 +59,8 @@ FN Mat4 orthographicForwardZ(Real l, Real r, Real b, Real t, Real near, Real far
                 -((r + l) / (r - l)), (t + b) / (t - b), -near / (far - near), 1.0);
 }
 
-/// Through the window [l, r] x [b, t] of the near plane, reversed depth, no far plane: depth = near / distance.
+/// Through the window [l, r] x [b, t] of the near plane, reversed depth, no far plane: depth = near /
+/// distance.
 FN Mat4 frustumInfinite(Real l, Real r, Real b, Real t, Real near) {
     return Mat4(2.0 * near / (r - l), 0.0, 0.0, 0.0,  //
                 0.0, -2.0 * near / (t - b), 0.0, 0.0,  //
@@ -99,11 +101,15 @@ FN Mat4 perspectiveFinite(Real fovY, Real aspect, Real near, Real far) {
 /// Distance along -z of a depth of `perspective`; 0 is infinitely far.
 FN Real viewDistance(Real depth, Real near) { return near / depth; }
 
-// Viewport: normalised device coordinates to pixels, x right and y down from the top left corner, the centre of pixel
-// (i, j) at (i + 0.5, j + 0.5). z is left as it is.
+// Viewport: normalised device coordinates to pixels, x right and y down from the top left corner, the centre
+// of pixel (i, j) at (i + 0.5, j + 0.5). z is left as it is.
 
-FN Vec2 viewportPoint(Vec2 ndc, Vec2 size) { return Vec2((ndc.x + 1.0) * 0.5 * size.x, (ndc.y + 1.0) * 0.5 * size.y); }
-FN Vec2 viewportInverse(Vec2 pixel, Vec2 size) { return Vec2(pixel.x / size.x * 2.0 - 1.0, pixel.y / size.y * 2.0 - 1.0); }
+FN Vec2 viewportPoint(Vec2 ndc, Vec2 size) {
+    return Vec2((ndc.x + 1.0) * 0.5 * size.x, (ndc.y + 1.0) * 0.5 * size.y);
+}
+FN Vec2 viewportInverse(Vec2 pixel, Vec2 size) {
+    return Vec2(pixel.x / size.x * 2.0 - 1.0, pixel.y / size.y * 2.0 - 1.0);
+}
 /// For the engine's clip space, whose y points down already.
 FN Mat4 viewport(Vec2 size) {
     return Mat4(0.5 * size.x, 0.0, 0.0, 0.0,  //

@@ -11,10 +11,10 @@
 //   PRECISION_BITS                  32 or 64; GLSL is 32
 // Structs work as in GLSL, `Ray(origin, direction)` constructs. Components are v.x, v[i] and m[column][row];
 // write Vec3(v4) and Vec2(v.x, v.y) instead of swizzles. The built-ins there are in C++ are listed in
-// engine/core/shared_builtins.inc; those whose precision Vulkan leaves open (sin, exp, pow, ...) are absent on
-// purpose: use the own versions of shaders/shared/math.glsl (realSin, realExp, realPow, ...). fma is absent too:
-// it is fused on some devices only.
-// Include guards are SHADERS_SHARED_<FILE>_GLSL; a new file is listed in engine/core/shared_library.inc.
+// engine/core/shared_builtins.inc; those whose precision Vulkan leaves open (sin, exp, pow, ...) are absent
+// on purpose: use the own versions of shaders/shared/math.glsl (realSin, realExp, realPow, ...). fma is
+// absent too: it is fused on some devices only. Include guards are SHADERS_SHARED_<FILE>_GLSL; a new file is
+// listed in engine/core/shared_library.inc.
 #ifndef SHADERS_SHARED_REAL_GLSL
 #define SHADERS_SHARED_REAL_GLSL
 

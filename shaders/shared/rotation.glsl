@@ -1,5 +1,6 @@
-// Rotations in 3D: about the axes, Euler angles, axis and angle (Rodrigues), unit quaternions. Right-handed: a positive
-// angle turns counter-clockwise seen against the axis. Matrices act on columns, v' = M v. Angles are radians.
+// Rotations in 3D: about the axes, Euler angles, axis and angle (Rodrigues), unit quaternions. Right-handed:
+// a positive angle turns counter-clockwise seen against the axis. Matrices act on columns, v' = M v. Angles
+// are radians.
 #ifndef SHADERS_SHARED_ROTATION_GLSL
 #define SHADERS_SHARED_ROTATION_GLSL
 #include "shaders/shared/real.glsl"
@@ -25,8 +26,8 @@ FN Mat3 rotationZ(Real angle) {
 /// Rx(a) Ry(b) Rz(c): z is applied first.
 FN Mat3 rotationEuler(Vec3 angles) { return rotationX(angles.x) * rotationY(angles.y) * rotationZ(angles.z); }
 
-/// Angles with rotationEuler(angles) = r, b in [-pi/2, pi/2]. In gimbal lock (b = +-pi/2), where only a +- c counts,
-/// any split that gives r back: c is found after a is undone, so it takes what a left.
+/// Angles with rotationEuler(angles) = r, b in [-pi/2, pi/2]. In gimbal lock (b = +-pi/2), where only a +- c
+/// counts, any split that gives r back: c is found after a is undone, so it takes what a left.
 FN Vec3 eulerAngles(Mat3 r) {
     // Rows: (cos b cos c, -cos b sin c, sin b), (.., .., -sin a cos b), (.., .., cos a cos b).
     Real a = realAtan2(-r[2].y, r[2].z);
@@ -40,8 +41,8 @@ FN Vec3 eulerAngles(Mat3 r) {
 /// The matrix N of the cross product: N v = n x v.
 FN Mat3 crossMatrix(Vec3 n) { return Mat3(0.0, n.z, -n.y, -n.z, 0.0, n.x, n.y, -n.x, 0.0); }
 
-/// A vector of length 1 +- 1e-6 made unit to the rounding of its components, by one step of Newton's iteration with the
-/// length's error computed exactly.
+/// A vector of length 1 +- 1e-6 made unit to the rounding of its components, by one step of Newton's
+/// iteration with the length's error computed exactly.
 FN Vec4 unitAccurate(Vec4 v) {
     Real e0, e1, e2, e3;
     precise Real excess = twoProduct(v.x, v.x, e0) - 1.0;
@@ -55,8 +56,8 @@ FN Vec3 unitAccurate(Vec3 v) {
     return zero ? v : Vec3(u);
 }
 
-/// Rodrigues: R = cos(angle) I + (1 - cos(angle)) n n^T + sin(angle) N, n the axis normalised; the axis (0, 0, 0)
-/// gives the identity. (The lecture's printed formula closes its bracket too late.)
+/// Rodrigues: R = cos(angle) I + (1 - cos(angle)) n n^T + sin(angle) N, n the axis normalised; the axis (0,
+/// 0, 0) gives the identity. (The lecture's printed formula closes its bracket too late.)
 FN Mat3 rotationAbout(Vec3 axis, Real angle) {
     Vec3 n = unitAccurate(normalizeSafe(axis, Vec3(0.0)));
     Real s, c, sHalf, cHalf;
@@ -64,7 +65,8 @@ FN Mat3 rotationAbout(Vec3 axis, Real angle) {
     realSinCos(turn, s, c);
     realSinCos(0.5 * turn, sHalf, cHalf);
     Real versine = 2.0 * sHalf * sHalf;  // 1 - cos without cancellation
-    // cos + versine x^2 = 1 - versine (y^2 + z^2): by whichever square is the lesser, which carries the lesser error.
+    // cos + versine x^2 = 1 - versine (y^2 + z^2): by whichever square is the lesser, which carries the
+    // lesser error.
     Vec3 q = n * n;
     Vec3 diagonal = Vec3(q.x < 0.5 ? c + versine * q.x : 1.0 - versine * (q.y + q.z),
                          q.y < 0.5 ? c + versine * q.y : 1.0 - versine * (q.x + q.z),

@@ -1,6 +1,6 @@
 // Affine transforms: points and directions in homogeneous coordinates, 2D and 3D building blocks, composition
-// (linear part first, then translation) and decomposition, views. The engine's world is right-handed; cameras look
-// along their -Z with +Y up.
+// (linear part first, then translation) and decomposition, views. The engine's world is right-handed; cameras
+// look along their -Z with +Y up.
 #ifndef SHADERS_SHARED_TRANSFORM_GLSL
 #define SHADERS_SHARED_TRANSFORM_GLSL
 #include "shaders/shared/matrix.glsl"
@@ -8,8 +8,8 @@
 #include "shaders/shared/rotation.glsl"
 #include "shaders/shared/vector.glsl"
 
-// Homogeneous coordinates. A point has w = 1 (any w != 0 stands for the same point), a vector w = 0: point - point
-// is a vector, point + vector a point, and point + point, of w = 2, their midpoint.
+// Homogeneous coordinates. A point has w = 1 (any w != 0 stands for the same point), a vector w = 0: point -
+// point is a vector, point + vector a point, and point + point, of w = 2, their midpoint.
 
 FN Vec4 homogeneousPoint(Vec3 p) { return Vec4(p, 1.0); }
 FN Vec4 homogeneousVector(Vec3 v) { return Vec4(v, 0.0); }
@@ -67,8 +67,8 @@ FN Mat4 inverseRigid(Mat4 m) {
     return affineMatrix(inverted, -(inverted * Vec3(m[3])));
 }
 
-/// An affine transform in parts, applied in this order: shear, scale, rotate, translate. The shear is unit upper
-/// triangular: x' = x + shear.x y + shear.y z, y' = y + shear.z z. A mirroring is a negative scale.z.
+/// An affine transform in parts, applied in this order: shear, scale, rotate, translate. The shear is unit
+/// upper triangular: x' = x + shear.x y + shear.y z, y' = y + shear.z z. A mirroring is a negative scale.z.
 struct AffineParts {
     Vec3 translation;
     Vec4 rotation;  // unit quaternion
@@ -84,8 +84,9 @@ FN Mat4 composeAffine(AffineParts p) {
     return affineMatrix(Mat3(x, y + x * p.shear.x, z + y * p.shear.z + x * p.shear.y), p.translation);
 }
 
-/// The parts of an invertible affine matrix, by orthogonalising its columns in order; twice, since once leaves the
-/// rounding errors of nearly parallel columns. Without shear these are translation, rotation and scale as in glTF.
+/// The parts of an invertible affine matrix, by orthogonalising its columns in order; twice, since once
+/// leaves the rounding errors of nearly parallel columns. Without shear these are translation, rotation and
+/// scale as in glTF.
 FN AffineParts decomposeAffine(Mat4 m) {
     Vec3 a = Vec3(m[0]);
     Vec3 b = Vec3(m[1]);
@@ -109,10 +110,10 @@ FN AffineParts decomposeAffine(Mat4 m) {
 
 // Views.
 
-/// World to camera for a camera at `eye` gazing along `gaze` (any length), with `up` (any length, not along the
-/// gaze) upwards: eye to 0, gaze to -z, up into the y-z plane. The basis is re-orthonormalised: x = gaze x up,
-/// y = x x gaze (the lecture takes up as given, which is right only at right angles to the gaze). An up along
-/// the gaze is replaced by the axis the gaze is least along, and a zero gaze by -z.
+/// World to camera for a camera at `eye` gazing along `gaze` (any length), with `up` (any length, not along
+/// the gaze) upwards: eye to 0, gaze to -z, up into the y-z plane. The basis is re-orthonormalised: x = gaze
+/// x up, y = x x gaze (the lecture takes up as given, which is right only at right angles to the gaze). An up
+/// along the gaze is replaced by the axis the gaze is least along, and a zero gaze by -z.
 FN Mat4 viewMatrix(Vec3 eye, Vec3 gaze, Vec3 up) {
     Vec3 g = normalizeSafe(gaze, Vec3(0.0, 0.0, -1.0));
     Vec3 t = normalizeSafe(up, Vec3(0.0));

@@ -1,6 +1,7 @@
-// Sine, cosine, tangent and their inverses, the same on every device that rounds +, -, *, / and sqrt as IEEE does.
-// Coefficients are minimax fits (Remez exchange, each rounded to float before the next was fitted). Errors stated
-// are the worst found by tests/accuracy over every float of the domain, in ULP of the exact result.
+// Sine, cosine, tangent and their inverses, the same on every device that rounds +, -, *, / and sqrt as IEEE
+// does. Coefficients are minimax fits (Remez exchange, each rounded to float before the next was fitted).
+// Errors stated are the worst over every normal float of the domain, in ULP of the exact result:
+// tests/accuracy, exhaustively.
 #ifndef SHADERS_SHARED_TRIGONOMETRY_GLSL
 #define SHADERS_SHARED_TRIGONOMETRY_GLSL
 #include "shaders/shared/float_bits.glsl"
@@ -22,14 +23,15 @@ FN Real cosKernel(Real r, Real low) {
     return y;
 }
 
-/// x = quadrant pi/2 + r + low with |r| <= pi/4. pi/2 in parts of 8 bits, whose products with the quadrant are
-/// exact, so that r keeps its last bits next to multiples of pi/2 up to |x| = 1e5. Larger angles lose accuracy
-/// bit by bit, and have none beyond 2^22; infinities and NaN give NaN.
+/// x = quadrant pi/2 + r + low with |r| <= pi/4. pi/2 in parts of 8 bits, whose products with the quadrant
+/// are exact, so that r keeps its last bits next to multiples of pi/2 up to |x| = 1e5. Larger angles lose
+/// accuracy bit by bit, and have none beyond 2^22; infinities and NaN give NaN.
 FN Real reduceQuadrant(Real x, OUT(Real) low, OUT(int) quadrant) {
     precise Real k = roundEven(clamp(x, -4194304.0, 4194304.0) * REAL(0.636619772367581343076));
     // Multiples of 2^-24 below 1: these three are exact.
     precise Real near = ((x - k * 1.5703125) - k * 0.0004825592041015625) - k * REAL(1.2516975402832031e-06);
-    // From here on each difference is exact where it is small, and its rounding error is kept where it is not.
+    // From here on each difference is exact where it is small, and its rounding error is kept where it is
+    // not.
     precise Real part = k * REAL(1.5832483768463135e-08);
     precise Real nearer = near - part;
     precise Real part2 = k * REAL(6.0481397667899728e-11);
@@ -41,7 +43,7 @@ FN Real reduceQuadrant(Real x, OUT(Real) low, OUT(int) quadrant) {
     return isinf(x) ? quietNaN() : abs(sum) > 1.0 ? 0.0 : sum;
 }
 
-/// sin x and cos x at once.
+/// sin x and cos x at once. 1.02 ULP up to |x| = 1e5.
 FN void realSinCos(Real x, OUT(Real) sine, OUT(Real) cosine) {
     int quadrant;
     Real low;
@@ -56,18 +58,21 @@ FN void realSinCos(Real x, OUT(Real) sine, OUT(Real) cosine) {
     cosine = ((quadrant + 1) & 2) != 0 ? -c1 : c1;
 }
 
+/// 1.02 ULP up to |x| = 1e5.
 FN Real realSin(Real x) {
     Real sine, cosine;
     realSinCos(x, sine, cosine);
     return sine;
 }
 
+/// 1.02 ULP up to |x| = 1e5.
 FN Real realCos(Real x) {
     Real sine, cosine;
     realSinCos(x, sine, cosine);
     return cosine;
 }
 
+/// 2.8 ULP up to |x| = 1e5.
 FN Real realTan(Real x) {
     int quadrant;
     Real low;
@@ -78,8 +83,8 @@ FN Real realTan(Real x) {
     return abs(x) < REAL(2e-4) ? x : y;
 }
 
-/// sin(2 pi u) and cos(2 pi u): cheaper than realSinCos, and exact in its reduction for every u. What azimuths of
-/// samples want. Multiples of a quarter turn give exactly 0 and 1.
+/// sin(2 pi u) and cos(2 pi u): cheaper than realSinCos, and exact in its reduction for every u. What
+/// azimuths of samples want. Multiples of a quarter turn give exactly 0 and +-1. 1.67 ULP.
 FN void sinCosTurns(Real u, OUT(Real) sine, OUT(Real) cosine) {
     Real t = u - roundEven(u);
     Real k = roundEven(t * 4.0);
@@ -108,7 +113,7 @@ FN Real asinTail(Real x, Real z) {
     return x * (z * p);
 }
 
-/// Inverse sine in [-pi/2, pi/2]; NaN for |x| > 1.
+/// Inverse sine in [-pi/2, pi/2]; NaN for |x| > 1. 1.32 ULP.
 FN Real realAsin(Real x) {
     Real a = abs(x);
     bool outer = a > 0.5;
@@ -123,8 +128,8 @@ FN Real realAsin(Real x) {
     return isnan(x) ? x : multiplySign(y, x);
 }
 
-/// Inverse cosine in [0, pi]; NaN for |x| > 1. Clamp a dot product of unit vectors first, or better, use
-/// angleBetween of shaders/shared/vector.glsl.
+/// Inverse cosine in [0, pi]; NaN for |x| > 1. 1.16 ULP. Clamp a dot product of unit vectors first, or
+/// better, use angleBetween of shaders/shared/vector.glsl.
 FN Real realAcos(Real x) {
     Real a = abs(x);
     bool outer = a > 0.5;
@@ -156,7 +161,7 @@ FN Real atanKernel(Real t) {
     return y;
 }
 
-/// Inverse tangent in [-pi/2, pi/2].
+/// Inverse tangent in [-pi/2, pi/2]. 1.53 ULP.
 FN Real realAtan(Real x) {
     Real a = abs(x);
     bool outer = a > 1.0;
@@ -166,8 +171,8 @@ FN Real realAtan(Real x) {
     return isnan(x) ? x : multiplySign(y, x);
 }
 
-/// The angle of (x, y) from the x axis, in [-pi, pi], for every quadrant, zeros and infinities as in C: the signs
-/// of zeros count, atan2(0, -0) = pi.
+/// The angle of (x, y) from the x axis, in [-pi, pi], for every quadrant, zeros and infinities as in C: the
+/// signs of zeros count, atan2(0, -0) = pi. 1.56 ULP in 2e7 random pairs.
 FN Real realAtan2(Real y, Real x) {
     Real ax = abs(x);
     Real ay = abs(y);

@@ -55,19 +55,20 @@ FN Vec3 projectOnto(Vec3 a, Vec3 b) {
 }
 FN Vec3 rejectFrom(Vec3 a, Vec3 b) { return a - projectOnto(a, b); }
 
-/// The z component of a x b: positive where b is to the left (counter-clockwise) of a, negative to the right. The
-/// sign is right and the value within 2 ULP even for nearly parallel vectors.
+/// The z component of a x b: positive where b is to the left (counter-clockwise) of a, negative to the right.
+/// The sign is right and the value within 2 ULP even for nearly parallel vectors.
 FN Real cross2(Vec2 a, Vec2 b) { return differenceOfProducts(a.x, b.y, a.y, b.x); }
 
-/// 1 where p is to the left of the line from a to b (y up), -1 to the right, 0 on it. Exact for coordinates whose
-/// differences are exact, e.g. a grid of 2^-8 within 2^15.
+/// 1 where p is to the left of the line from a to b (y up), -1 to the right, 0 on it. Exact for coordinates
+/// whose differences are exact, e.g. a grid of 2^-8 within 2^15.
 FN int sideOfLine(Vec2 a, Vec2 b, Vec2 p) {
     Real area = cross2(b - a, p - a);
     return area > 0.0 ? 1 : area < 0.0 ? -1 : 0;
 }
 
-/// True where p is in the triangle or on its edge, whichever way round it is. A degenerate triangle contains what
-/// lies on its line between its ends; no pixel rule is applied here (see the rasterizer's top-left rule).
+/// True where p is in the triangle or on its edge, whichever way round it is. A degenerate triangle contains
+/// what lies on its line between its ends; no pixel rule is applied here (see the rasterizer's top-left
+/// rule).
 FN bool insideTriangle(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
     int ab = sideOfLine(a, b, p);
     int bc = sideOfLine(b, c, p);
@@ -79,8 +80,8 @@ FN bool insideTriangle(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
     return oneSide && p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
 }
 
-/// Two unit vectors that make a right-handed orthonormal basis (tangent, bitangent, normal) with a unit normal,
-/// continuous but at z = 0 (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017).
+/// Two unit vectors that make a right-handed orthonormal basis (tangent, bitangent, normal) with a unit
+/// normal, continuous but at z = 0 (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017).
 FN void orthonormalBasis(Vec3 normal, OUT(Vec3) tangent, OUT(Vec3) bitangent) {
     Real s = normal.z < 0.0 ? -1.0 : 1.0;
     Real a = -1.0 / (s + normal.z);

@@ -102,7 +102,7 @@ TEST(DeviceMath, PowAndAtan2KeepTheirBounds) {
         powers.size(), worstPower, powerBits, angles.size(), worstAngle, angleBits);
     EXPECT_GE(powers.size(), 1'000'000u);
     EXPECT_LE(worstPower, 1.2);
-    EXPECT_LE(worstAngle, 1.5);
+    EXPECT_LE(worstAngle, 1.7);
     if (roundsCorrectly()) {
         EXPECT_EQ(powerBits, 0u);
         EXPECT_EQ(angleBits, 0u);
@@ -139,7 +139,7 @@ TEST(DeviceMath, SpecialValuesAreThoseOfTheHost) {
         if (std::isnan(angle)) {
             EXPECT_TRUE(std::isnan(angles[i])) << a[i] << " " << b[i];
         } else if (angle == 0 || std::fabs(angle) >= std::numeric_limits<float>::min()) {
-            EXPECT_LE(verify::ulpError(angles[i], angle), 1.5) << a[i] << " " << b[i];
+            EXPECT_LE(verify::ulpError(angles[i], angle), 1.7) << a[i] << " " << b[i];
         }
     }
 }

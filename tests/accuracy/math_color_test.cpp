@@ -28,6 +28,10 @@ TEST(MathColor, SrgbCurveHasPublishedValues) {
     EXPECT_EQ(shared32::decodeSrgb(0.f), 0.f);
     EXPECT_NEAR(shared32::encodeSrgb(1.f), 1, 1.2e-7);
     EXPECT_EQ(shared32::decodeSrgb(1.f), 1.f);
+    EXPECT_TRUE(std::isnan(shared32::encodeSrgb(NAN)));
+    EXPECT_TRUE(std::isnan(shared32::decodeSrgb(NAN)));
+    EXPECT_GT(shared32::encodeSrgb(INFINITY), 1e15f);
+    EXPECT_EQ(shared32::encodeSrgb(-0.5f), -6.46f);
     // The published constants leave a step of 2.9e-8 where the two parts meet.
     const long double step = encodeReference(std::nextafter(0.0031308L, 1.L)) - encodeReference(0.0031308L);
     EXPECT_NEAR(std::fabs(step), 2.9e-8L, 1e-9L);

