@@ -65,11 +65,54 @@ struct VecLess {
     }
 };
 
-/** Names of corners, each declared when it is first used. */
-class CornerNames {
+/** One function over all triangles: the closest hit, or whether there is any. Slots are in scene order, so
+ * that a slot is a g. */
+class Writer {
 public:
-    explicit CornerNames(std::string& text) : text_(text) {}
-    std::string operator()(const glm::vec3& p) {
+    Writer(std::span<const glm::vec4> triangles, std::set<std::size_t> lights, bool any)
+        : triangles_(triangles), lights_(std::move(lights)), any_(any) {}
+
+    std::string write() {
+        text_ = any_ ? "bool testAny(vec3 origin, vec3 direction, int source, int target, float nearest) {\n"
+                       "    bool blocked = false;\n"
+                     : "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int "
+                       "slot) {\n"
+                       "    slot = -1;\n";
+        text_ +=
+            "    const RayShear ray = shearOf(origin, direction);\n"
+            "    float t;\n"
+            "    int half_;\n"
+            "    bool hit;\n";
+        const std::size_t count = triangles_.size() / 3;
+        for (std::size_t i = 0; i < count; ++i) {
+            Quad quad;
+            if (i + 1 < count && makesQuad(corners(i), corners(i + 1), quad)) {
+                std::array<std::string, 4> q;
+                for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
+                text_ += fmt::format("    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, half_)", q[0],
+                                     q[1], q[2], q[3]);
+                finish(i, 2);
+                ++i;
+            } else {
+                std::array<std::string, 3> p;
+                for (std::size_t c = 0; c < 3; ++c) p[c] = name(corners(i).at[c]);
+                text_ +=
+                    fmt::format("    hit = meetsTriangle(ray, {}, {}, {}, nearest, t)", p[0], p[1], p[2]);
+                finish(i, 1);
+            }
+        }
+        text_ += any_ ? "    return blocked;\n}\n" : "}\n";
+        return text_;
+    }
+
+private:
+    Corners corners(std::size_t slot) const {
+        return {{glm::vec3(triangles_[slot * 3]), glm::vec3(triangles_[slot * 3 + 1]),
+                 glm::vec3(triangles_[slot * 3 + 2])}};
+    }
+
+    /** Name of a corner, declared when it is first used. */
+    std::string name(const glm::vec3& p) {
         const auto [place, isNew] = index_.try_emplace(p, index_.size());
         if (isNew)
             text_ += fmt::format("    const vec3 p{} = sheared(ray, vec3({}, {}, {}));\n", place->second,
@@ -77,8 +120,27 @@ public:
         return fmt::format("p{}", place->second);
     }
 
-private:
-    std::string& text_;
+    /** What comes of a hit of the `count` triangles from slot i on, which are in one plane. */
+    void finish(std::size_t i, std::size_t count) {
+        const auto excluded = [&](const char* what) {
+            return count == 1 ? fmt::format(" && {} != {}", what, i)
+                              : fmt::format(" && uint({} - {}) > 1u", what, i);
+        };
+        text_ += excluded("source");
+        // Only lights are ever a shadow ray's target.
+        if (any_ && (lights_.contains(i) || (count == 2 && lights_.contains(i + 1))))
+            text_ += excluded("target");
+        if (any_)
+            text_ += ";\n    blocked = blocked || hit;\n";
+        else
+            text_ += fmt::format(";\n    nearest = hit ? t : nearest;\n    slot = hit ? {}{} : slot;\n", i,
+                                 count == 2 ? " + half_" : "");
+    }
+
+    std::span<const glm::vec4> triangles_;
+    std::set<std::size_t> lights_;
+    bool any_;
+    std::string text_;
     std::map<glm::vec3, std::size_t, VecLess> index_;
 };
 
@@ -94,51 +156,14 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
                                 glm::floatBitsToUint(lights[i].z), glm::floatBitsToUint(lights[i].w));
         text += ")\n";
     }
-    // Slots are in scene order, so that a slot is a g; only lights are ever a shadow ray's target.
     std::set<std::size_t> lightTriangles;
     for (std::size_t row = 0; row + kLightTexels <= lights.size(); row += kLightTexels)
         if (glm::floatBitsToUint(lights[row + 2].w) <= std::uint32_t(LightKind::Parallelogram))
             lightTriangles.insert(glm::floatBitsToUint(lights[row + 5].x));
-    const auto notTarget = [&](std::size_t slot) {
-        return lightTriangles.contains(slot) ? fmt::format(" && target.x != {}", slot) : std::string();
-    };
-    text +=
-        "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n"
-        "void testAll(vec3 origin, vec3 direction, int source, ivec2 target, inout float nearest, out int "
-        "slot) {\n"
-        "    const RayShear ray = shearOf(origin, direction);\n"
-        "    slot = -1;\n"
-        "    float t;\n"
-        "    bool hit, second;\n";
-    CornerNames name(text);
-    const std::size_t count = triangles.size() / 3;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto corners = [&](std::size_t slot) {
-            return Corners{{glm::vec3(triangles[slot * 3]), glm::vec3(triangles[slot * 3 + 1]),
-                            glm::vec3(triangles[slot * 3 + 2])}};
-        };
-        Quad quad;
-        if (i + 1 < count && makesQuad(corners(i), corners(i + 1), quad)) {
-            std::array<std::string, 4> q;
-            for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
-            text += fmt::format(
-                "    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, second) && source != {} && "
-                "source != {}{}{};\n"
-                "    nearest = hit ? t : nearest;\n"
-                "    slot = hit ? (second ? {} : {}) : slot;\n",
-                q[0], q[1], q[2], q[3], i, i + 1, notTarget(i), notTarget(i + 1), i + 1, i);
-            ++i;
-        } else {
-            std::array<std::string, 3> p;
-            for (std::size_t c = 0; c < 3; ++c) p[c] = name(corners(i).at[c]);
-            text += fmt::format(
-                "    hit = meetsTriangle(ray, {}, {}, {}, nearest, t) && source != {}{};\n"
-                "    nearest = hit ? t : nearest;\n"
-                "    slot = hit ? {} : slot;\n",
-                p[0], p[1], p[2], i, notTarget(i), i);
-        }
-    }
-    text += "}\n#endif\n";
+    text += "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n";
+    text += Writer(triangles, lightTriangles, false).write();
+    text += Writer(triangles, lightTriangles, true).write();
+    text += "#endif\n";
     return text;
 }
 

@@ -14,7 +14,7 @@ namespace helio {
 /** Triangles up to which a scene is written out. */
 inline constexpr std::uint32_t kUnrolledTriangles = 64;
 
-/** "generated.glsl" for shaders/intersection/scene_hit.glsl: defines UNROLLED_SCENE and testAll().
+/** "generated.glsl" for shaders/intersection/scene_hit.glsl: defines UNROLLED_SCENE, testAll() and testAny().
  * @param triangles packed triangles in order of slot, 3 texels each (PackedScene::triangles)
  * @param lights packed lights; where there is just one, it is written out too (UNROLLED_LIGHT) */
 std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const glm::vec4> lights);

@@ -4,7 +4,7 @@
 #include "shaders/intersection/traverse.glsl"
 #include "shaders/scene/features.glsl"
 
-// Defines testAll() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).
+// Defines testAll() and testAny() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).
 #include "generated.glsl"
 
 /** A target that no triangle belongs to. */
@@ -16,7 +16,7 @@ int closestHit(vec3 origin, vec3 direction, int source, out float distance, out 
     slot = -1;
     if (TRIANGLE_COUNT == 0) return 0;
 #ifdef UNROLLED_SCENE
-    testAll(origin, direction, source, NO_TARGET, distance, slot);
+    testAll(origin, direction, source, distance, slot);
     return 0;
 #else
     return traverse(origin, direction, false, source, NO_TARGET, distance, slot);
@@ -28,14 +28,15 @@ int closestHit(vec3 origin, vec3 direction, int source, out float distance, out 
 int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit, out bool hit) {
     hit = false;
     if (TRIANGLE_COUNT == 0) return 0;
-    float nearest = limit;
-    int slot, steps = 0;
 #ifdef UNROLLED_SCENE
-    testAll(origin, direction, source, target, nearest, slot);
+    hit = limit > 0.0 && testAny(origin, direction, source, target.x, limit);
+    return 0;
 #else
-    steps = traverse(origin, direction, true, source, target, nearest, slot);
-#endif
+    float nearest = limit;
+    int slot;
+    const int steps = traverse(origin, direction, true, source, target, nearest, slot);
     hit = slot >= 0;
     return steps;
+#endif
 }
 #endif

@@ -7,8 +7,8 @@
  *
  * Why no ray slips between neighbours: a corner is sheared to the same 2D point in every triangle that shares
  * it. An edge function is a difference of two rounded products; rounding is monotonic, so its sign is never
- * wrong for those points, at worst it is 0, and 0 counts as inside on both sides. Edges of neighbours are
- * therefore never both missed. `precise` keeps drivers from contracting the difference to a fused operation,
+ * wrong for those points, at worst it is 0, and 0 counts as inside. Edges of neighbours are therefore never
+ * both missed. `precise` keeps drivers from contracting the difference to a fused operation,
  * which would break that.
  *
  * No absolute epsilon: everything scales with the coordinates, as long as products of two stay in the range of
@@ -17,32 +17,36 @@
 
 #define INFINITE_DISTANCE uintBitsToFloat(0x7f800000u)
 
-/** What all tests of one ray share. */
+/** What all tests of one ray share: rows of the shear. Two entries of each row are 0, 1 or make the products
+ * with them exact, so that a row costs rounding like x - shear * z does; multiplying by 0 and 1 is cheaper on
+ * lavapipe than selecting components. */
 struct RayShear {
-    vec3 origin;   ///< permuted so that the direction's largest component is z
-    vec3 shear;    ///< x/z, y/z, 1/z of the permuted direction
-    int axis;      ///< which component became z
+    vec3 origin;
+    vec3 x;         ///< e_i - (d_i / d_k) e_k, k the axis of the direction's largest component
+    vec3 y;         ///< e_j - (d_j / d_k) e_k
+    vec3 z;         ///< e_k
+    float inverse;  ///< 1 / d_k
 };
-
-vec3 permuted(vec3 v, int axis) {
-    return axis == 2 ? v : (axis == 0 ? v.yzx : v.zxy);
-}
 
 RayShear shearOf(vec3 origin, vec3 direction) {
     const vec3 size = abs(direction);
     RayShear ray;
-    ray.axis = size.z >= size.x && size.z >= size.y ? 2 : (size.x >= size.y ? 0 : 1);
-    ray.origin = permuted(origin, ray.axis);
-    const vec3 d = permuted(direction, ray.axis);
-    const float inverse = 1.0 / d.z;
-    ray.shear = vec3(d.x * inverse, d.y * inverse, inverse);
+    ray.origin = origin;
+    const bool alongZ = size.z >= size.x && size.z >= size.y, alongX = !alongZ && size.x >= size.y;
+    ray.inverse = 1.0 / (alongZ ? direction.z : (alongX ? direction.x : direction.y));
+    const vec3 s = direction * -ray.inverse;
+    ray.x = alongZ ? vec3(1.0, 0.0, s.x) : (alongX ? vec3(s.y, 1.0, 0.0) : vec3(0.0, s.z, 1.0));
+    ray.y = alongZ ? vec3(0.0, 1.0, s.y) : (alongX ? vec3(s.z, 0.0, 1.0) : vec3(1.0, s.x, 0.0));
+    ray.z = alongZ ? vec3(0.0, 0.0, 1.0) : (alongX ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
     return ray;
 }
 
 /** A corner in the ray's frame: sheared x and y, and z before scaling. */
 vec3 sheared(RayShear ray, vec3 corner) {
-    precise vec3 moved = permuted(corner, ray.axis) - ray.origin;
-    precise vec3 result = vec3(moved.x - ray.shear.x * moved.z, moved.y - ray.shear.y * moved.z, moved.z);
+    precise vec3 moved = corner - ray.origin;
+    precise vec3 result = vec3(ray.x.x * moved.x + ray.x.y * moved.y + ray.x.z * moved.z,
+                               ray.y.x * moved.x + ray.y.y * moved.y + ray.y.z * moved.z,
+                               ray.z.x * moved.x + ray.z.y * moved.y + ray.z.z * moved.z);
     return result;
 }
 
@@ -52,14 +56,27 @@ vec3 edgeFunctions(vec3 a, vec3 b, vec3 c) {
     return edges;
 }
 
+/** Whether 0 < t < nearest, by the bits: as unsigned integers positive floats are in order, and negative ones,
+ * 0, infinities and NaN (minus 1, wrapping around) lie above all of them. One comparison where the driver's
+ * float comparisons take several. */
+bool isNearer(float t, float nearest) {
+    return floatBitsToUint(t) - 1u < floatBitsToUint(nearest) - 1u;
+}
+
 /** Whether the ray meets the triangle of sheared corners at a distance in (0, nearest); `t` is it, in units of
- * the direction's length. */
+ * the direction's length.
+ *
+ * Signs of the edge functions are compared as integers. All at most 0 holds for 0 of either sign. All at least
+ * 0 fails for -0; it comes about only where an edge ends in the ray, (+0, +0), and starts where x > 0 > y (or
+ * the reverse), and its other triangle then has +0. Around a corner the triangle before the first such edge
+ * has +0 on both sides, so that a closed fan is still never missed. A determinant of 0 makes t no number or
+ * infinite, which is not nearer. */
 bool meetsTriangle(RayShear ray, vec3 a, vec3 b, vec3 c, float nearest, out float t) {
     const vec3 e = edgeFunctions(a, b, c);
-    const bool inside = (e.x >= 0.0 && e.y >= 0.0 && e.z >= 0.0) || (e.x <= 0.0 && e.y <= 0.0 && e.z <= 0.0);
-    const float determinant = e.x + e.y + e.z;
-    t = (e.x * a.z + e.y * b.z + e.z * c.z) * ray.shear.z / determinant;
-    return inside && determinant != 0.0 && t > 0.0 && t < nearest;
+    const ivec3 bits = floatBitsToInt(e);
+    const bool inside = min(min(bits.x, bits.y), bits.z) >= 0 || max(max(bits.x, bits.y), bits.z) <= 0;
+    t = (e.x * a.z + e.y * b.z + e.z * c.z) * ray.inverse / (e.x + e.y + e.z);
+    return inside && isNearer(t, nearest);
 }
 
 /** One edge function, as in edgeFunctions(). */
@@ -69,16 +86,18 @@ float edgeFunction(vec3 a, vec3 b) {
 }
 
 /** As meetsTriangle() for a flat convex quadrilateral of sheared corners in order, split along b and d;
- * `second`: whether the half away from a is met. */
-bool meetsQuad(RayShear ray, vec3 a, vec3 b, vec3 c, vec3 d, float nearest, out float t, out bool second) {
-    const float ab = edgeFunction(a, b), bc = edgeFunction(b, c), cd = edgeFunction(c, d), da = edgeFunction(d, a);
-    const float diagonal = edgeFunction(b, d);
-    const bool positive = ab >= 0.0 && bc >= 0.0 && cd >= 0.0 && da >= 0.0;
-    const bool negative = ab <= 0.0 && bc <= 0.0 && cd <= 0.0 && da <= 0.0;
+ * `half_`: 1 where the half away from a is met, else 0. */
+bool meetsQuad(RayShear ray, vec3 a, vec3 b, vec3 c, vec3 d, float nearest, out float t, out int half_) {
+    const float ab = edgeFunction(a, b), da = edgeFunction(d, a), diagonal = edgeFunction(b, d);
+    const ivec4 bits =
+        floatBitsToInt(vec4(ab, edgeFunction(b, c), edgeFunction(c, d), da));
+    const bool inside = min(min(bits.x, bits.y), min(bits.z, bits.w)) >= 0 ||
+                        max(max(bits.x, bits.y), max(bits.z, bits.w)) <= 0;
     const float determinant = diagonal + da + ab;
-    t = (diagonal * a.z + da * b.z + ab * d.z) * ray.shear.z / determinant;
-    second = positive ? diagonal < 0.0 : diagonal > 0.0;
-    return (positive || negative) && determinant != 0.0 && t > 0.0 && t < nearest;
+    t = (diagonal * a.z + da * b.z + ab * d.z) * ray.inverse / determinant;
+    // Beyond the diagonal its weight has the other sign than the first half's area.
+    half_ = int((floatBitsToUint(diagonal) ^ floatBitsToUint(determinant)) >> 31);
+    return inside && isNearer(t, nearest);
 }
 
 /** Barycentrics of v0, v1, v2 where the ray meets the triangle's plane; they sum to 1. */
