@@ -17,6 +17,9 @@ namespace helio::gpu {
 
 namespace {
 
+/** Pipelines kept before those not in use are dropped. */
+constexpr std::size_t kMostPipelines = 256;
+
 std::uint32_t bits(const SpecValue& value) {
     return std::visit(
         [](auto v) -> std::uint32_t {
@@ -99,6 +102,10 @@ std::shared_ptr<const ComputePipeline> PipelineCache::get(const ComputePipelineI
     const std::string key = contentKey(info);
     const std::lock_guard lock(mutex_);
     if (const auto found = byContent_.find(key); found != byContent_.end()) return found->second;
+    // An application that edits its scenes for days makes ever new variants; those that nobody holds go.
+    if (byContent_.size() >= kMostPipelines) {
+        std::erase_if(byContent_, [](const auto& entry) { return entry.second.use_count() == 1; });
+    }
     auto pipeline = create(info);
     ++created_;
     byContent_.emplace(key, pipeline);

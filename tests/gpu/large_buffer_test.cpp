@@ -98,6 +98,58 @@ TEST(LargeBuffer, IsWrittenInWindowsAndReadWholeOnTheDevice) {
     EXPECT_EQ(check()[0], 1u);
 }
 
+TEST(LargeBuffer, TexelViewsReachAsFarAsOneAllocation) {
+    // A buffer as large as the device allows up to 2 GiB, of which a few texels are touched: on a CPU device
+    // the rest costs no memory.
+    Device& device = test::device();
+    Device::Impl& impl = device.impl();
+    const std::uint64_t bytes =
+        std::min({std::uint64_t(2) << 30, impl.info.maxBufferSize, impl.info.maxTexelBufferElements * 16,
+                  impl.facts.properties11.maxMemoryAllocationSize - (1 << 20)}) /
+        16 * 16;
+    ASSERT_GT(bytes, impl.info.maxStorageBufferRange) << "texel views would gain nothing";
+    DeviceBuffer buffer(device, "vast", bytes);
+    const vk::raii::BufferView view =
+        gpu::createTexelView(impl, buffer.impl()->resource, vk::Format::eR32G32B32A32Uint);
+    const std::uint32_t last = std::uint32_t(bytes / 16) - 1;
+    const std::vector<std::uint32_t> places = {
+        0, (128u << 20) / 16 - 1, (128u << 20) / 16, (1u << 30) / 16, last - 1, last};
+    DeviceBuffer at = makeBuffer(device, "places", places);
+    DeviceBuffer seen(device, "seen", places.size() * 4);
+    test::submitDispatch(
+        device,
+        {.name = "store",
+         .glsl = R"(#version 460
+layout(local_size_x = 1) in;
+layout(binding = 0, rgba32ui) writeonly uniform uimageBuffer uVast;
+layout(binding = 1) readonly buffer Places { uint at[]; };
+void main() { uint p = at[gl_WorkGroupID.x]; imageStore(uVast, int(p), uvec4(p ^ 0xabcdefu)); })",
+         .bindings = {{{.binding = 0, .type = vk::DescriptorType::eStorageTexelBuffer}, {.texelView = *view}},
+                      {{.binding = 1}, {.buffer = *at.impl()->resource.buffer}}},
+         .groups = std::uint32_t(places.size())});
+    test::submitDispatch(
+        device,
+        {.name = "fetch",
+         .glsl = R"(#version 460
+layout(local_size_x = 1) in;
+layout(binding = 0) uniform usamplerBuffer uVast;
+layout(binding = 1) readonly buffer Places { uint at[]; };
+layout(binding = 2) writeonly buffer Seen { uint seen[]; };
+void main() { seen[gl_WorkGroupID.x] = texelFetch(uVast, int(at[gl_WorkGroupID.x])).z; })",
+         .bindings = {{{.binding = 0, .type = vk::DescriptorType::eUniformTexelBuffer}, {.texelView = *view}},
+                      {{.binding = 1}, {.buffer = *at.impl()->resource.buffer}},
+                      {{.binding = 2}, {.buffer = *seen.impl()->resource.buffer}}},
+         .groups = std::uint32_t(places.size())});
+    std::vector<std::uint32_t> out(places.size());
+    seen.download(out.data(), out.size() * 4);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(out[i], places[i] ^ 0xabcdefu) << "texel " << places[i];
+        std::uint32_t host = 0;
+        buffer.download(&host, 4, places[i] * 16ull);
+        EXPECT_EQ(host, places[i] ^ 0xabcdefu) << "byte " << places[i] * 16ull;
+    }
+}
+
 TEST(LargeBuffer, ViewBeyondTheDevicesTexelsIsRefusedByName) {
     Device& device = test::device();
     Device::Impl& impl = device.impl();

@@ -31,11 +31,11 @@ struct DeviceInfo {
     std::string apiVersion;  ///< "1.3.224"
     std::uint32_t vendorId = 0;
     std::uint32_t deviceId = 0;
-    std::uint32_t subgroupSize = 0;                  ///< invocations
-    std::uint64_t maxStorageBufferRange = 0;         ///< bytes a storage-buffer binding may span
-    std::uint64_t maxTexelBufferElements = 0;        ///< texels of a buffer view
-    std::uint64_t maxBufferSize = 0;                 ///< bytes of one buffer
-    std::uint64_t memoryBytes = 0;                   ///< of the largest device-local heap
+    std::uint32_t subgroupSize = 0;            ///< invocations
+    std::uint64_t maxStorageBufferRange = 0;   ///< bytes a storage-buffer binding may span
+    std::uint64_t maxTexelBufferElements = 0;  ///< texels of a buffer view
+    std::uint64_t maxBufferSize = 0;           ///< bytes of one buffer
+    std::uint64_t memoryBytes = 0;             ///< of the largest device-local heap
     std::uint32_t maxWorkgroupInvocations = 0;
     std::uint32_t maxSharedMemoryBytes = 0;
     std::vector<Capability> capabilities;
@@ -105,7 +105,7 @@ class DeviceBuffer {
 public:
     DeviceBuffer() = default;
     /** Allocates `bytes` (at least 4 are taken). Usable as storage, texel, uniform, indirect and transfer
-     * buffer. The name appears in messages. Throws OutOfDeviceMemory. */
+     * buffer. Contents are undefined. The name appears in messages. Throws OutOfDeviceMemory. */
     DeviceBuffer(Device& device, std::string name, std::uint64_t bytes);
     ~DeviceBuffer();
     DeviceBuffer(DeviceBuffer&&) noexcept;
@@ -114,8 +114,8 @@ public:
     const std::string& name() const;
     std::uint64_t bytes() const;
     explicit operator bool() const { return impl_ != nullptr; }
-    /** Copies host bytes in through the staging ring; returns when the source may be reused. Ordered before
-     * every plan executed later. */
+    /** Copies host bytes in; returns when the source may be reused. Plans executed before still see the old
+     * bytes, plans executed later the new. The range must lie within the buffer. */
     void upload(const void* data, std::uint64_t bytes, std::uint64_t offset = 0);
     /** Waits for all work and copies out. */
     void download(void* data, std::uint64_t bytes, std::uint64_t offset = 0) const;
@@ -140,6 +140,8 @@ DeviceBuffer makeBuffer(Device& device, std::string name, const Range& values) {
 class DeviceImage {
 public:
     DeviceImage() = default;
+    /** Every texel starts at zero. Throws OutOfDeviceMemory, or DeviceError where the device has no storage
+     * images of the size or format. */
     DeviceImage(Device& device, std::string name, std::uint32_t width, std::uint32_t height, Format format);
     ~DeviceImage();
     DeviceImage(DeviceImage&&) noexcept;
