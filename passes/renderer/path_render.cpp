@@ -59,12 +59,16 @@ private:
     /** Whether nothing more is to be done; estimates the error where somebody wants to know it. */
     bool judged(std::uint32_t reached) {
         if (job_.result.cancelled || reached >= job_.options.samples) return true;
-        if (job_.options.maxError > 0 && reached >= 8) {
-            const ErrorEstimate error = estimateError(target_.resolve());
-            relmse_ = error.relmse;
-            if (error.high < job_.options.maxError && error.reliable) return true;
-        }
-        return false;
+        if (reached < 8) return false;
+        const bool decides = job_.options.maxError > 0;
+        // For the display alone, an estimate may take a fiftieth of the time.
+        if (!decides && (!job_.options.progress || job_.seconds() < 50 * estimateSeconds_)) return false;
+        const Stopwatch watch;
+        const ErrorEstimate error = estimateError(target_.resolve());
+        estimateSeconds_ = watch.seconds();
+        relmse_ = error.relmse;
+        // A tail that few samples have not met yet looks like no error at all.
+        return decides && error.high < job_.options.maxError && (error.reliable || reached >= 64);
     }
 
     Progress progress(std::uint32_t reached) const {
@@ -97,7 +101,7 @@ private:
     bool cpuDevice_;
     SampleSchedule schedule_;
     TurnBudget budget_;
-    double relmse_ = -1;
+    double relmse_ = -1, estimateSeconds_ = 0;
 };
 
 void addFirstHits(Frame& frame, const FirstHits& hits) {

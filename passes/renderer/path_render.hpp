@@ -11,7 +11,8 @@ namespace helio {
 PathTraceOptions pathTraceOptions(const RenderOptions& options);
 
 /** Traces the scene into the film until the samples, the time or the error asked for are reached, or the
- * application cancels; fills in the job's result. The film holds the samples of all whole batches. */
+ * application cancels; fills in the job's result. The film holds the samples of all whole batches; after
+ * a cancel, pixels that were through with the last batch hold that too, as the samples channel says. */
 void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job);
 
 }  // namespace helio

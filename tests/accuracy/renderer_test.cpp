@@ -144,6 +144,33 @@ TEST(Renderer, CancelledRendersHoldWholeBatches) {
     EXPECT_TRUE(cancelled.error.reliable);
 }
 
+TEST(Renderer, CancelledInTheMiddleOfABatchHoldsTheOnesBefore) {
+    RenderOptions options = small(8192, 96);
+    Progress last;
+    options.progress = [&](const Progress& progress) {
+        last = progress;
+        return progress.fraction * 8192 <
+               progress.samples + 16;  // until paths beyond the last end are traced
+    };
+    const RenderResult cancelled = renderer().render(cornell(), options);
+    EXPECT_TRUE(cancelled.cancelled);
+    EXPECT_GT(last.samples, 0u);
+    EXPECT_EQ(cancelled.samples, last.samples);
+    // Pixels that were through with the batch hold it too, and say so.
+    const ImageF whole = renderer().render(cornell(), small(last.samples, 96)).image;
+    const auto samples = std::size_t(whole.channel("samples"));
+    int unfinished = 0;
+    for (std::uint32_t y = 0; y < 96; ++y) {
+        for (std::uint32_t x = 0; x < 96; ++x) {
+            EXPECT_GE(cancelled.image.at(x, y, samples), last.samples);
+            if (cancelled.image.at(x, y, samples) != last.samples) continue;
+            ++unfinished;
+            for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(cancelled.image.at(x, y, c), whole.at(x, y, c));
+        }
+    }
+    EXPECT_GT(unfinished, 0);
+}
+
 TEST(Renderer, CancelledBeforeTheFirstSampleIsBlack) {
     for (const Pipeline pipeline : {Pipeline::Path, Pipeline::Raster}) {
         for (const char* stage : {"load", "compile"}) {

@@ -71,6 +71,7 @@ struct RenderResult {
     /** From the start of the process for its first render, else from the call, to the end of the first
      * (compiling) run of every kernel. CPU seconds are user and system time of the whole process. */
     double setupSeconds = 0, setupCpuSeconds = 0, renderCpuSeconds = 0;
+    /** Per pixel; after a cancel some pixels may have more, see the samples channel. */
     std::uint32_t samples = 0;
     RayCounts rays;
     std::uint64_t nanCount = 0, truncatedPaths = 0;
