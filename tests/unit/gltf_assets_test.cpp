@@ -13,6 +13,7 @@ std::string asset(const std::string& name) {
 }
 
 void expectSound(const Scene& scene) {
+    EXPECT_NO_THROW(scene.validate());
     for (const Mesh& mesh : scene.meshes) {
         for (const Primitive& primitive : mesh.primitives) {
             const std::size_t size = primitive.positions.size();

@@ -119,6 +119,7 @@ class EverySample : public testing::TestWithParam<std::string> {};
 TEST_P(EverySample, IsSound) {
     Scene scene = load("sample:" + GetParam());
     EXPECT_EQ(scene.name, "sample:" + GetParam());
+    EXPECT_NO_THROW(scene.validate());
     EXPECT_TRUE(scene.skipped.empty());
     EXPECT_TRUE(scene.warnings.empty());
     for (const Mesh& mesh : scene.meshes) {

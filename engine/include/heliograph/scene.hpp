@@ -170,6 +170,10 @@ struct Scene {
     std::vector<std::pair<std::string, std::string>> skipped;
     std::vector<std::string> warnings;
 
+    /** Refuses what nothing can be computed from: an index out of range, attributes of the wrong number, a number
+     * that is not finite or out of its range, a cyclic hierarchy. Throws InputError with the place. Scenes from
+     * load() pass; those built in code are checked when they are rendered. */
+    void validate() const;
     /** World placements, computed in double, depth first from the roots, parents before children. Throw
      * InputError for a node reached twice (a cycle or two parents) or an index out of range. */
     std::vector<Instance> instances() const;
