@@ -22,16 +22,16 @@ const int SMALL = 8;
 const int SMALL_EXTENT = 8192;
 const uint PER_THREAD = 4u;
 
-shared uint workgroupCounters[COUNTERS];
+shared uint packed[4];
 
 void main() {
     uint lane = gl_LocalInvocationIndex;
-    if (lane < uint(COUNTERS)) workgroupCounters[lane] = 0u;
+    if (lane < 4u) packed[lane] = 0u;
     barrier();
 
     ivec2 size = imageSizePixels();
     double width = double(size.x), height = double(size.y);
-    uint triangles = 0u, outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
+    uint outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
          clippedCount = 0u, visited = 0u, covered = 0u;
     [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
         uint index = gl_WorkGroupID.x * (64u * PER_THREAD) + k * 64u + lane;
@@ -39,7 +39,6 @@ void main() {
         uint t = push.first + min(index, push.count - 1u);
         Triangle source = fetchTriangle(int(t));
         HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
-        triangles += uint(valid);
 
         // Each test is linear in homogeneous pixels, hence right for vertices behind the eye too.
         bool outside = max(a.x, max(b.x, c.x)) < 0.0LF || max(a.y, max(b.y, c.y)) < 0.0LF ||
@@ -105,15 +104,20 @@ void main() {
         }
     }
 
-    atomicAdd(workgroupCounters[COUNT_TRIANGLES], triangles);
-    atomicAdd(workgroupCounters[COUNT_OUTSIDE], outsideCount);
-    atomicAdd(workgroupCounters[COUNT_BACK], backCount);
-    atomicAdd(workgroupCounters[COUNT_EMPTY], emptyCount);
-    atomicAdd(workgroupCounters[COUNT_SMALL], smallCount);
-    atomicAdd(workgroupCounters[COUNT_LARGE], largeCount);
-    atomicAdd(workgroupCounters[COUNT_CLIPPED], clippedCount);
-    atomicAdd(workgroupCounters[COUNT_SMALL_VISITED], visited);
-    atomicAdd(workgroupCounters[COUNT_SMALL_COVERED], covered);
+    // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 256
+    // triangles, which 10 bits hold, and tests at most 2^14 pixels a lane in 2^6 lanes.
+    atomicAdd(packed[0], outsideCount | backCount << 10 | emptyCount << 20);
+    atomicAdd(packed[1], smallCount | largeCount << 10 | clippedCount << 20);
+    atomicAdd(packed[2], visited);
+    atomicAdd(packed[3], covered);
     barrier();
-    if (lane < uint(COUNTERS)) atomicAdd(counters[lane], uint64_t(workgroupCounters[lane]));
+    if (lane == 0u) {
+        uint begin = gl_WorkGroupID.x * (64u * PER_THREAD);
+        atomicAdd(counters[COUNT_TRIANGLES], uint64_t(min(64u * PER_THREAD, push.count - begin)));
+    } else if (lane <= 6u) {
+        uint value = packed[(lane - 1u) / 3u] >> (10u * ((lane - 1u) % 3u)) & 1023u;
+        atomicAdd(counters[COUNT_OUTSIDE + int(lane) - 1], uint64_t(value));
+    } else if (lane <= 8u) {
+        atomicAdd(counters[COUNT_SMALL_VISITED + int(lane) - 7], uint64_t(packed[lane - 5u]));
+    }
 }

@@ -44,6 +44,8 @@ void requireRasterCapabilities(const DeviceInfo& device) {
 RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& options)
     : options_(options), maxStorageBufferRange_(device.info().maxStorageBufferRange) {
     assert(options.batch > 0);
+    assert(options.stripRows == 0 || options.stripRows == 8 || options.stripRows == 16);
+    if (options_.stripRows == 0) options_.stripRows = device.info().subgroupSize <= 16 ? 16 : 8;
     requireRasterCapabilities(device.info());
     // A record is 64 bytes and all of a batch must be in reach of one binding; indirect dispatches have at
     // most 65,535 workgroups of 64.
@@ -126,7 +128,7 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
             .overwrites({{"uEntries", entry}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kFillGroups); });
-        graph.compute("raster.tile", shaders::rasterTile)
+        graph.compute("raster.tile", options_.stripRows == 16 ? shaders::rasterTileTall : shaders::rasterTile)
             .reads({{"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts}})
             .modifies({{"uVisibility", output.visibility}, {"uCounters", output.counters}})
             .indirect(state)

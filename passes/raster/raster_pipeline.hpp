@@ -32,6 +32,9 @@ struct RasterOptions {
     std::uint32_t batch = 1u << 18;
     /** Most entries that the lists of tiles hold at a time; results do not depend on it. */
     std::uint64_t entries = 1u << 24;
+    /** Pixels of a column that an invocation of the tile kernel owns, 8 or 16; 0 chooses by the device's
+     * subgroups. Results do not depend on it. */
+    std::uint32_t stripRows = 0;
 };
 
 /** Work done for an image, summed over the batches. */
