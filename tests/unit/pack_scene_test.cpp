@@ -1,0 +1,146 @@
+// The flattened scene: order and ids, mirrored transforms, the light table, what is refused.
+#include "passes/scene/packed_scene.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+namespace helio {
+namespace {
+
+/** Two instances of one mesh of two primitives; the second mirrored. */
+Scene twoInstances() {
+    Scene scene;
+    scene.name = "two";
+    scene.materials.resize(2);
+    scene.materials[1].emission = glm::vec3(2.0f);
+    Primitive first;
+    first.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    first.indices = {0, 1, 2, 0, 2, 3};
+    first.material = 0;
+    Primitive second;
+    second.positions = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    second.indices = {0, 1, 2};
+    second.material = 1;
+    scene.meshes.push_back({"mesh", {first, second}});
+    Node plain, mirrored;
+    plain.mesh = mirrored.mesh = 0;
+    mirrored.scale = {-1, 1, 1};
+    mirrored.translation = {5, 0, 0};
+    scene.nodes = {plain, mirrored};
+    scene.roots = {0, 1};
+    return scene;
+}
+
+std::uint32_t bits(float value) {
+    return glm::floatBitsToUint(value);
+}
+
+TEST(PackScene, TrianglesAreInSceneOrderWithoutATree) {
+    const PackedScene packed = packScene(twoInstances(), {.tree = false, .sampleSurfaces = true});
+    ASSERT_EQ(packed.triangleCount, 6u);
+    EXPECT_EQ(packed.instanceFirst, (std::vector<std::uint32_t>{0, 3, 6}));
+    for (std::uint32_t slot = 0; slot < 6; ++slot) {
+        EXPECT_EQ(bits(packed.triangles[slot * 3].w), slot);
+        EXPECT_EQ(bits(packed.triangles[slot * 3 + 1].w), slot / 3);
+        EXPECT_EQ(bits(packed.triangles[slot * 3 + 2].w), slot % 3 == 2 ? 1u : 0u);
+    }
+    EXPECT_TRUE(packed.nodes.empty());
+    EXPECT_TRUE(packed.normals.empty());
+    EXPECT_TRUE(packed.texcoords.empty());
+    EXPECT_TRUE(packed.colors.empty());
+}
+
+TEST(PackScene, ATreeKeepsEveryTriangle) {
+    const PackedScene packed = packScene(twoInstances());
+    std::set<std::uint32_t> seen;
+    for (std::size_t slot = 0; slot < 6; ++slot) seen.insert(bits(packed.triangles[slot * 3].w));
+    EXPECT_EQ(seen.size(), 6u);
+    EXPECT_EQ(packed.nodes.size(), packed.nodeCount * 5u);
+}
+
+TEST(PackScene, MirroredTransformsKeepTheFront) {
+    const PackedScene packed = packScene(twoInstances(), {.tree = false, .sampleSurfaces = true});
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+        const glm::vec3 a(packed.triangles[slot * 3]), b(packed.triangles[slot * 3 + 1]),
+            c(packed.triangles[slot * 3 + 2]);
+        EXPECT_GT(glm::cross(b - a, c - a).z, 0.0f) << slot;
+    }
+}
+
+TEST(PackScene, LightsAreChosenByPower) {
+    Scene scene = twoInstances();
+    scene.lights.push_back({});
+    scene.lights[0].intensity = glm::vec3(0.5f);
+    Node lamp;
+    lamp.light = 0;
+    scene.nodes.push_back(lamp);
+    scene.roots.push_back(2);
+    const PackedScene packed = packScene(scene);
+    ASSERT_EQ(packed.lightCount, 3u);
+    // Power of a one-sided surface of area 1/2 and radiance 2: pi; of the point light: 4 pi / 2.
+    const double pi = 3.14159265358979;
+    const double total = pi + pi + 2 * pi;
+    EXPECT_FLOAT_EQ(packed.lights[5].z, float(pi / total));
+    EXPECT_FLOAT_EQ(packed.lights[2 * kLightTexels + 5].z, float(2 * pi / total));
+    EXPECT_FLOAT_EQ(packed.lights[3].w, float(pi / total / 0.5));                       // per area
+    EXPECT_FLOAT_EQ(packed.materials[kMaterialTexels + 2].x, float(pi / total / 0.5));  // what a ray finds
+    EXPECT_EQ(packScene(scene, {.tree = true, .sampleSurfaces = false}).lightCount, 1u);
+}
+
+TEST(PackScene, TwoTrianglesOfAQuadAreOneLight) {
+    Scene scene = twoInstances();
+    scene.materials[0].emission = glm::vec3(1.0f);
+    scene.materials[1].emission = glm::vec3(0.0f);
+    const PackedScene packed = packScene(scene);
+    EXPECT_EQ(packed.lightCount, 2u);
+    EXPECT_FALSE(packed.triangleLights);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const glm::vec3 e1(packed.lights[i * kLightTexels + 1]), e2(packed.lights[i * kLightTexels + 2]);
+        EXPECT_FLOAT_EQ(glm::length(glm::cross(e1, e2)), 1.0f);
+    }
+}
+
+TEST(PackScene, AliasTableGivesTheWeights) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform;
+    for (std::size_t n : {1u, 2u, 7u, 1000u}) {
+        std::vector<double> weights(n);
+        double total = 0;
+        for (double& w : weights) total += w = std::pow(uniform(random), 6);
+        const pack::AliasTable table = pack::aliasTable(weights);
+        std::vector<double> chance(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            EXPECT_GE(table.threshold[i], 0.0f);
+            EXPECT_LE(table.threshold[i], 1.0f);
+            chance[i] += table.threshold[i] / double(n);
+            chance[table.alias[i]] += (1.0 - table.threshold[i]) / double(n);
+        }
+        for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(chance[i], weights[i] / total, 1e-7) << i;
+    }
+}
+
+TEST(PackScene, BadInputIsRefused) {
+    Scene index = twoInstances();
+    index.meshes[0].primitives[0].indices[4] = 99;
+    EXPECT_THROW(packScene(index), InputError);
+    Scene material = twoInstances();
+    material.meshes[0].primitives[0].material = 2;
+    EXPECT_THROW(packScene(material), InputError);
+    Scene position = twoInstances();
+    position.meshes[0].primitives[1].positions[2].y = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(packScene(position), InputError);
+    Scene overflow = twoInstances();
+    overflow.meshes[0].primitives[1].positions[1].x = 1e30f;
+    overflow.nodes[1].scale = glm::vec3(1e30f);
+    EXPECT_THROW(packScene(overflow), InputError);
+    EXPECT_EQ(packScene(Scene{}).triangleCount, 0u);
+}
+
+}  // namespace
+}  // namespace helio
