@@ -4,6 +4,8 @@
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/sample_schedule.hpp"
 
+#include <heliograph/error.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -138,6 +140,15 @@ std::vector<PassTiming> timingsSince(const std::vector<PassTiming>& before, std:
 }
 
 }  // namespace
+
+void checkPathSize(const std::array<std::uint32_t, 2>& size) {
+    // The path tracer keeps 4 x 2 texels of state per pixel, the film 2 x 3, in images of at most 16384
+    // texels.
+    if (size[0] <= 4096 && size[1] <= kMaxFilmHeight) return;
+    throw InputError("", "size",
+                     fmt::format("{}x{} pixels are too many for the path pipeline", size[0], size[1]),
+                     fmt::format("give at most 4096x{}", kMaxFilmHeight));
+}
 
 PathTraceOptions pathTraceOptions(const RenderOptions& options) {
     PathTraceOptions result;

@@ -124,6 +124,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderJob job(options);
     RenderResult& result = job.result;
     check(options);
+    if (options.pipeline == Pipeline::Path) checkPathSize(options.size);
     result.scene = scene.name;
     result.device = impl_->device.info().name;
     result.version = version();
