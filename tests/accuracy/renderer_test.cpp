@@ -370,6 +370,17 @@ TEST(Renderer, RefusesSenselessOptions) {
     refused(options);
 }
 
+TEST(Renderer, RefusesScenesThatNothingCanBeComputedFrom) {
+    Scene scene = unlitSquare();
+    scene.meshes[0].primitives[0].indices[4] = 99;
+    try {
+        renderer().render(scene, small(1));
+        FAIL() << "an index out of range was taken";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("99"), std::string::npos) << error.what();
+    }
+}
+
 TEST(Renderer, SavedFilesCarryTheMetadata) {
     const RenderResult result = renderer().render(cornell(), small(8));
     const std::filesystem::path file = test::scratchFolder() / "result.exr";
