@@ -21,9 +21,19 @@ echo "== Sanitizer build of the host tests"
 build build-sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DHELIOGRAPH_SANITIZE=address,undefined -DHELIOGRAPH_SAMPLES=OFF -DHELIOGRAPH_HOST_TESTS_ONLY=ON
 
 status=0
-export ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-} UBSAN_OPTIONS=print_stacktrace=1
+export ASAN_OPTIONS=detect_leaks=1:${ASAN_OPTIONS:-} UBSAN_OPTIONS=print_stacktrace=1
 echo "== Host tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 ctest --test-dir build-sanitize --output-on-failure --no-tests=error --parallel "$jobs" "$@" || status=1
 echo "== All tests, Release"
 ctest --test-dir build --output-on-failure --no-tests=error --parallel "$jobs" "$@" || status=1
+
+# The last lines: what was left out for want of third-party assets, and the count of test cases.
+logs=(build*/Testing/Temporary/LastTest.log)
+skipped=$(sed -n 's/^\[  SKIPPED \] \([^ ]*\) (.*/\1/p' "${logs[@]}" | sort)
+if [ -n "$skipped" ]; then
+    printf 'Left out, since ../shared/assets is not there: %s\n' "$(sort -u <<<"$skipped" | paste -sd ' ')"
+fi
+count() { grep -cE "$1" < <(cat "${logs[@]}") || true; }
+printf 'cases: %d passed, %d failed, %d skipped\n' "$(count '^\[       OK \] ')" \
+    "$(($(count '^\[  FAILED  \] .* \(') + status))" "$(grep -c . <<<"$skipped" || true)"
 exit $status

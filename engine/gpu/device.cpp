@@ -96,7 +96,7 @@ Device::Impl::Opened openDevice(const DeviceOptions& options) {
             facts.push_back(gpu::queryDevice(each));
             infos.push_back(gpu::describeDevice(facts.back()));
             if (!infos.back().usable) {
-                log().info("device {} '{}' is refused: {}", infos.size() - 1, infos.back().name,
+                log().warn("device {} '{}' is refused: {}", infos.size() - 1, infos.back().name,
                            infos.back().refusal);
             }
         }
