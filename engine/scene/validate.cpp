@@ -35,7 +35,7 @@ public:
         for (std::size_t i = 0; i < scene_.lights.size(); ++i)
             check(scene_.lights[i], fmt::format("light {}", i));
         if (scene_.environment) {
-            color("environment", "radiance", scene_.environment->radiance);
+            light("environment", "radiance", scene_.environment->radiance);
             index("environment", "image", scene_.environment->image, scene_.images.size(), -1);
         }
         checkPlacements();
@@ -60,6 +60,16 @@ private:
 
     void color(const std::string& place, const char* what, glm::vec3 value) const {
         for (int c = 0; c < 3; ++c) number(place, what, value[c], 0, largest);
+    }
+
+    /** What light a picture can hold. */
+    void light(const std::string& place, const char* what, glm::vec3 value) const {
+        color(place, what, value);
+        for (int c = 0; c < 3; ++c) {
+            if (value[c] > brightest)
+                refuse(place, fmt::format("its {} is {}", what, value[c]),
+                       "the film takes at most 2^100 (1.27e30): give the scene another unit of power");
+        }
     }
 
     template <class Vector>
@@ -99,7 +109,7 @@ private:
         number(place, "occlusionStrength", material.occlusionStrength, 0, 1);
         number(place, "ior", material.ior, 0, largest);
         number(place, "alphaCutoff", material.alphaCutoff, 0, largest);
-        color(place, "emission", material.emission);
+        light(place, "emission", material.emission);
         color(place, "specularColor", material.specularColor);
         use(place, "baseColorTexture", material.baseColorTexture);
         use(place, "metallicRoughnessTexture", material.metallicRoughnessTexture);
@@ -154,7 +164,7 @@ private:
     }
 
     void check(const PunctualLight& light, const std::string& place) const {
-        color(place, "intensity", light.intensity);
+        this->light(place, "intensity", light.intensity);
         number(place, "range", light.range, 0, largest);
         if (light.type != PunctualLight::Type::Spot) return;
         number(place, "innerConeAngle", light.innerConeAngle, 0, light.outerConeAngle);
@@ -177,6 +187,8 @@ private:
     }
 
     static constexpr double largest = std::numeric_limits<float>::max();
+    /** FILM_LARGEST of shaders/film/accumulate.glsl: a sample above it is left out of the picture. */
+    static constexpr float brightest = 0x1p100f;
     static constexpr double smallest = std::numeric_limits<float>::min();
     const Scene& scene_;
 };

@@ -2,7 +2,35 @@
 
 #include "passes/renderer/raster_render.hpp"
 
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 namespace helio {
+namespace {
+
+/** Refuses a camera without a direction of view or without an upright: every pipeline makes its axes from its
+ * node's -Z and Y, whatever their lengths. */
+void checkAxes(const Scene& scene, const PlacedCamera& placed) {
+    const auto unit = [](const glm::dvec3& v) {
+        // By the largest component first: squares of what a double holds need not fit a double.
+        const double size = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        return glm::normalize(v / size);
+    };
+    const glm::dvec3 up = unit(glm::dvec3(placed.transform[1])), back = unit(glm::dvec3(placed.transform[2]));
+    if (glm::length(glm::cross(up, back)) > 1e-6) return;  // false for NaN
+    const std::string& name = placed.node < 0 ? std::string() : scene.nodes[std::size_t(placed.node)].name;
+    throw InputError(scene.name,
+                     fmt::format("node {}{} (camera {})", placed.node, name.empty() ? "" : " '" + name + "'",
+                                 placed.camera),
+                     "its transform is singular: the camera has no direction or no upright",
+                     "give the camera's node and its parents scales that are not 0");
+}
+
+}  // namespace
 
 PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptions& pack)
     : deviceScene(device, scene, pack), bounds(scene.bounds()), skipped(scene.skipped) {
@@ -39,6 +67,7 @@ PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Envir
 
 View chooseView(const Scene& scene, const std::string& nameOrIndex, double aspect) {
     const auto viewOf = [](const Scene& from, const PlacedCamera& placed) {
+        checkAxes(from, placed);
         return View{from.cameras[std::size_t(placed.camera)], placed.transform};
     };
     // chooseCamera adds a camera to a scene that has none, hence the copies; meshes are needed only then.

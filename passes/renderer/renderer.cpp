@@ -34,8 +34,8 @@ void check(const RenderOptions& options) {
            "give a constant radiance");
     for (int c = 0; c < 3; ++c) {
         const float radiance = environment.radiance[c];
-        refuse(!(radiance >= 0) || std::isinf(radiance), "environment", fmt::format("radiance {}", radiance),
-               "give finite numbers of at least 0");
+        refuse(!(radiance >= 0) || radiance > 0x1p100f, "environment", fmt::format("radiance {}", radiance),
+               "give numbers from 0 to 2^100 (1.27e30), the most that a picture holds");
     }
 }
 
@@ -125,6 +125,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderResult& result = job.result;
     check(options);
     if (options.pipeline == Pipeline::Path) checkPathSize(options.size);
+    scene.validate();
     result.scene = scene.name;
     result.device = impl_->device.info().name;
     result.version = version();

@@ -6,11 +6,19 @@
 namespace helio::test {
 namespace {
 
-/** The assets are not part of the repository; what is not there is said, not passed over. */
-std::string asset(const std::string& name) {
-    const fs::path path = fs::path(HELIOGRAPH_SHARED_DIR) / "assets" / "gltf" / name;
-    return fs::exists(path) ? path.string() : std::string();
-}
+/** The assets are not part of the repository. Where their folder is not there the tests are left out and say
+ * so; where it is, every asset must be in it. */
+class GltfAssets : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!fs::exists(HELIOGRAPH_SHARED_DIR))
+            GTEST_SKIP() << "left out: there is no " HELIOGRAPH_SHARED_DIR;
+    }
+    /** Loads an asset; a missing one is load()'s refusal, which fails the test. */
+    static Scene load(const std::string& name) {
+        return helio::load((fs::path(HELIOGRAPH_SHARED_DIR) / "assets" / "gltf" / name).string());
+    }
+};
 
 void expectSound(const Scene& scene) {
     EXPECT_NO_THROW(scene.validate());
@@ -29,10 +37,8 @@ void expectSound(const Scene& scene) {
     }
 }
 
-TEST(GltfAssets, FlightHelmet) {
-    const std::string file = asset("FlightHelmet/FlightHelmet.gltf");
-    if (file.empty()) GTEST_SKIP() << "left out: FlightHelmet is not in " HELIOGRAPH_SHARED_DIR;
-    const Scene scene = helio::load(file);
+TEST_F(GltfAssets, FlightHelmet) {
+    const Scene scene = load("FlightHelmet/FlightHelmet.gltf");
     expectSound(scene);
     EXPECT_EQ(scene.meshes.size(), 6u);
     EXPECT_EQ(scene.materials.size(), 6u);
@@ -42,10 +48,8 @@ TEST(GltfAssets, FlightHelmet) {
     EXPECT_TRUE(scene.skipped.empty());
 }
 
-TEST(GltfAssets, Fox) {
-    const std::string file = asset("Fox.glb");
-    if (file.empty()) GTEST_SKIP() << "left out: Fox is not in " HELIOGRAPH_SHARED_DIR;
-    const Scene scene = helio::load(file);
+TEST_F(GltfAssets, Fox) {
+    const Scene scene = load("Fox.glb");
     expectSound(scene);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.triangleCount(), 576u);
@@ -56,10 +60,8 @@ TEST(GltfAssets, Fox) {
     EXPECT_TRUE(skipped.contains("animations"));
 }
 
-TEST(GltfAssets, MorphStressTest) {
-    const std::string file = asset("MorphStressTest.gltf");
-    if (file.empty()) GTEST_SKIP() << "left out: MorphStressTest is not in " HELIOGRAPH_SHARED_DIR;
-    const Scene scene = helio::load(file);
+TEST_F(GltfAssets, MorphStressTest) {
+    const Scene scene = load("MorphStressTest.gltf");
     expectSound(scene);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.meshes[0].primitives.size(), 2u);

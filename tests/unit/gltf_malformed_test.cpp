@@ -87,6 +87,10 @@ TEST_F(Gltf, RefusesMalformedDocumentsNamingThePlace) {
         {"-/asset/version", {}, "asset"},
         {"/asset/version", 2.0, "asset.version"},
         {"/asset/version", "1.0", "asset.version"},
+        {"/asset/minVersion", "2.1", "asset.minVersion"},
+        {"/asset/minVersion", "10.0", "asset.minVersion"},
+        {"/asset/minVersion", "two", "asset.minVersion"},
+        {"/asset/minVersion", 2.0, "asset.minVersion"},
         {"/buffers", json::object(), "buffers"},
         {"/buffers", json::array(), "bufferViews[0].buffer"},
         {"/buffers/0", nullptr, "buffers[0]"},
@@ -177,6 +181,9 @@ TEST_F(Gltf, RefusesMalformedDocumentsNamingThePlace) {
         {"/nodes/1/rotation", {0, 0, 1}, "nodes[1].rotation"},
         {"/nodes/1/translation", {1e300, 0, 0}, "nodes[1].translation"},
         {"/nodes/2/matrix/3", 1, "nodes[2].matrix"},
+        {"/nodes/2/translation", {0, 0, 0}, "nodes[2]: has a matrix and a translation"},
+        {"/nodes/2/rotation", {0, 0, 0, 1}, "nodes[2]: has a matrix and a rotation"},
+        {"/nodes/2/scale", {1, 1, 1}, "nodes[2]: has a matrix and a scale"},
         {"/nodes/2/matrix", {1}, "nodes[2].matrix"},
         {"/nodes/2/extensions/KHR_lights_punctual/light", 1, "light"},
         {"/scenes/0/nodes", {1}, "scenes[0].nodes[0]"},
@@ -208,6 +215,14 @@ TEST_F(Gltf, RefusesMalformedDocumentsNamingThePlace) {
         const std::string what = std::string(malformed.pointer) + " " + malformed.value.dump().substr(0, 80);
         const std::string text = refusal(write("bad.gltf", document.dump()), what);
         EXPECT_NE(text.find(malformed.place), std::string::npos) << what << ": " << text;
+    }
+}
+
+TEST_F(Gltf, TakesMinimumVersionsUpToTwo) {
+    for (const char* version : {"2.0", "1.0", "1.1", "02.00"}) {
+        GltfDocument file = GltfDocument::triangle();
+        file.doc["asset"]["minVersion"] = version;
+        EXPECT_NO_THROW(load(file)) << version;
     }
 }
 
@@ -259,6 +274,11 @@ TEST_F(Gltf, RefusesTextThatIsNoGltf) {
         {"zeros", std::string(64, '\0')},
     };
     for (const auto& [what, text] : texts) refusal(write("bad.gltf", text), what);
+    for (const char* name : {"empty.gltf", "empty.glb"})
+        EXPECT_NE(refusal(write(name, ""), name).find(": is empty;"), std::string::npos);
+    const std::string reason = refusal(write("bad.gltf", "{\n\"asset\": \x01\n}"), "control character");
+    EXPECT_NE(reason.find("line 2, byte 12: is no valid JSON: "), std::string::npos) << reason;
+    EXPECT_NE(reason.find("invalid literal"), std::string::npos) << reason;
     refusal(folder_ / "missing.gltf", "missing file");
     refusal(folder_ / "missing.glb", "missing file");
     fs::create_directories(folder_ / "folder.gltf");

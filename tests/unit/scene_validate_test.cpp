@@ -46,6 +46,12 @@ TEST(ValidateScene, AcceptsAWholeSceneAndAnEmptyOne) {
     EXPECT_NO_THROW(Scene{}.validate());
 }
 
+TEST(ValidateScene, AcceptsTheBrightestLight) {
+    Scene scene = whole();
+    scene.materials[0].emission = scene.lights[0].intensity = scene.environment->radiance = glm::vec3(0x1p100f);
+    EXPECT_NO_THROW(scene.validate());
+}
+
 TEST(ValidateScene, RefusesEachFaultNamingItsPlace) {
     struct Fault {
         const char* place;
@@ -77,6 +83,9 @@ TEST(ValidateScene, RefusesEachFaultNamingItsPlace) {
         {"mesh 0 primitive 0", [&](Scene& s) { primitive(s).positions[1].y = nan; }},
         {"mesh 0 primitive 0", [&](Scene& s) { primitive(s).normals[1].y = inf; }},
         {"mesh 0 primitive 0", [&](Scene& s) { primitive(s).texcoords[0][2].x = nan; }},
+        {"material 0", [](Scene& s) { s.materials[0].emission.b = 0x1.000002p100f; }},
+        {"light 0", [](Scene& s) { s.lights[0].intensity.g = 0x1.000002p100f; }},
+        {"environment", [](Scene& s) { s.environment->radiance.r = 0x1.000002p100f; }},
         {"camera 0", [](Scene& s) { s.cameras[0].yfov = 0; }},
         {"camera 0", [](Scene& s) { s.cameras[0].yfov = 3.2f; }},
         {"camera 0", [](Scene& s) { s.cameras[0].znear = 0; }},

@@ -37,6 +37,16 @@ void checkNesting(const std::string& file, std::string_view text) {
     }
 }
 
+/** What the parser says is wrong, without its number and its place, in one line of printable ASCII: it quotes
+ * the file, which may hold anything. */
+std::string reasonOf(const nlohmann::json::parse_error& error) {
+    std::string_view message = error.what();
+    if (const auto end = message.find(": "); end != message.npos) message.remove_prefix(end + 2);
+    std::string reason;
+    for (const char c : message.substr(0, 200)) reason.push_back(c >= ' ' && c <= '~' ? c : '?');
+    return reason;
+}
+
 nlohmann::json parse(const std::string& file, std::string_view text) {
     checkNesting(file, text);
     try {
@@ -44,8 +54,8 @@ nlohmann::json parse(const std::string& file, std::string_view text) {
     } catch (const nlohmann::json::parse_error& error) {
         const std::size_t byte = std::min(error.byte, text.size());
         const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(byte), '\n');
-        throw InputError(file, fmt::format("line {}", lines + 1), "is no valid JSON",
-                         "write the file again; it may be cut off");
+        throw InputError(file, fmt::format("line {}, byte {}", lines + 1, error.byte),
+                         "is no valid JSON: " + reasonOf(error), "write the file again; it may be cut off");
     } catch (const nlohmann::json::exception&) {  // a number beyond double's range
         throw InputError(file, "", "its JSON has a number that is out of range", "write the file again");
     }
@@ -99,6 +109,8 @@ Container readContainer(const std::string& file) {
     Container container;
     container.file = file;
     container.bytes = readFile(file);
+    if (container.bytes.empty())
+        throw InputError(file, "", "is empty", "give a .gltf or .glb file, or write this one again");
     const std::string_view text(reinterpret_cast<const char*>(container.bytes.data()),
                                 container.bytes.size());
     if (text.starts_with("glTF")) {

@@ -2,8 +2,12 @@
 
 #include "engine/scene/gltf/schema_check.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 namespace helio::gltf {
 namespace {
@@ -112,7 +116,7 @@ Check mesh() {
 
 Check node() {
     const Check light = object({{"light", indexInto("extensions.KHR_lights_punctual.lights"), required}});
-    return object({
+    const Check members = object({
         {"name", string()},
         {"children", arrayOf(indexInto("nodes"))},
         {"matrix", numbers(16)},
@@ -125,6 +129,16 @@ Check node() {
         {"weights", arrayOf(anyNumber())},
         {"extensions", object({{"KHR_lights_punctual", light}})},
     });
+    return [members](const Context& context, const Place& place, const nlohmann::json& value) {
+        members(context, place, value);
+        if (!value.contains("matrix")) return;
+        for (const char* other : {"translation", "rotation", "scale"}) {
+            if (value.contains(other)) {
+                refuse(context, place, fmt::format("has a matrix and a {}", other),
+                       "give a matrix, or translation, rotation and scale");
+            }
+        }
+    };
 }
 
 Check camera() {
@@ -158,6 +172,20 @@ Check light() {
         {"range", positive()},
         {"spot", object({{"innerConeAngle", number(0, 1.5708)}, {"outerConeAngle", number(0, 1.5708)}})},
     });
+}
+
+/** Whether a version, "MAJOR.MINOR", is no later than 2.0, which is what is read here. */
+bool isAtMostTwo(std::string_view version) {
+    const auto point = version.find('.');
+    const auto isNumber = [](std::string_view digits) {
+        return !digits.empty() && digits.find_first_not_of("0123456789") == digits.npos;
+    };
+    if (point == version.npos) return false;
+    std::string_view major = version.substr(0, point), minor = version.substr(point + 1);
+    if (!isNumber(major) || !isNumber(minor)) return false;
+    major.remove_prefix(std::min(major.find_first_not_of('0'), major.size()));
+    if (major.empty() || major == "1") return true;
+    return major == "2" && minor.find_first_not_of('0') == minor.npos;
 }
 
 const Check& documentCheck() {
@@ -207,6 +235,11 @@ void checkSchema(const std::string& file, const nlohmann::json& document) {
     const Place asset{&root, "asset", 0};
     if (!version.starts_with("2.")) {
         refuse(context, Place{&asset, "version", 0}, "is '" + version.substr(0, 20) + "'", "give glTF 2.0");
+    }
+    const std::string minimum = document["asset"].value("minVersion", "2.0");
+    if (!isAtMostTwo(minimum)) {
+        refuse(context, Place{&asset, "minVersion", 0}, "is '" + minimum.substr(0, 20) + "', above 2.0",
+               "export the file as glTF 2.0");
     }
 }
 
