@@ -1,6 +1,5 @@
-#include "engine/image/atomic_file.hpp"
-
 #include <heliograph/error.hpp>
+#include <heliograph/file.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -30,15 +29,6 @@ struct Temporary {
     }
 };
 
-/** The file a symbolic link leads to, there or not: renaming over the link would replace the link. */
-std::filesystem::path followLinks(std::filesystem::path file) {
-    std::error_code error;
-    for (int links = 0; links < 40 && std::filesystem::is_symlink(file, error); ++links) {
-        file = file.parent_path() / std::filesystem::read_symlink(file, error);
-    }
-    return file;
-}
-
 int writeAll(int descriptor, std::span<const std::byte> content) {
     while (!content.empty()) {
         const ssize_t written = ::write(descriptor, content.data(), content.size());
@@ -46,14 +36,38 @@ int writeAll(int descriptor, std::span<const std::byte> content) {
         if (written < 0) return errno;
         content = content.subspan(std::size_t(written));
     }
+    return 0;
+}
+
+int writeAndSync(int descriptor, std::span<const std::byte> content) {
+    if (const int error = writeAll(descriptor, content); error != 0) return error;
     return ::fsync(descriptor) != 0 ? errno : 0;
+}
+
+/** Whether the descriptor is open on the very file that the status is of. */
+bool isSameFile(const struct stat& status, int descriptor) {
+    struct stat open {};
+    return ::fstat(descriptor, &open) == 0 && open.st_dev == status.st_dev && open.st_ino == status.st_ino;
 }
 
 }  // namespace
 
+std::filesystem::path followLinks(const std::filesystem::path& file) {
+    std::filesystem::path result = std::filesystem::absolute(file);
+    std::error_code error;
+    for (int links = 0; links < 40 && std::filesystem::is_symlink(result, error); ++links) {
+        result = result.parent_path() / std::filesystem::read_symlink(result, error);
+    }
+    return result;
+}
+
 void writeFileAtomically(const std::filesystem::path& file, std::span<const std::byte> content) {
     static std::atomic<unsigned> count{0};
-    const std::filesystem::path target = followLinks(std::filesystem::absolute(file));
+    struct stat status {};
+    if (::stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+        throw InputError(file.string(), "", "is not a regular file", "name a file that can be replaced");
+    }
+    const std::filesystem::path target = followLinks(file);
     const std::filesystem::path folder = target.parent_path();
 
     Temporary temporary;
@@ -65,7 +79,8 @@ void writeFileAtomically(const std::filesystem::path& file, std::span<const std:
         temporary.isKept = true;  // not ours to remove
         fail(file, "created", error);
     }
-    if (const int error = writeAll(temporary.descriptor, content); error != 0) fail(file, "written", error);
+    if (const int error = writeAndSync(temporary.descriptor, content); error != 0)
+        fail(file, "written", error);
     if (::rename(temporary.path.c_str(), target.c_str()) != 0) fail(file, "replaced", errno);
     temporary.isKept = true;
     // The new name is on disk once its folder is. Some file systems cannot sync folders; the content is safe.
@@ -74,6 +89,24 @@ void writeFileAtomically(const std::filesystem::path& file, std::span<const std:
         ::fsync(folderDescriptor);
         ::close(folderDescriptor);
     }
+}
+
+void writeTextFile(const std::filesystem::path& file, std::string_view text) {
+    const std::span<const std::byte> content = std::as_bytes(std::span(text.data(), text.size()));
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return writeFileAtomically(file, content);
+    for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
+        if (!isSameFile(status, descriptor)) continue;
+        // Renaming over it would leave what is printed later in a file without a name.
+        if (const int error = writeAll(descriptor, content); error != 0) fail(file, "written", error);
+        return;
+    }
+    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return writeFileAtomically(file, content);
+    Temporary target;
+    target.isKept = true;  // not ours to remove
+    target.descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    if (target.descriptor < 0) fail(file, "opened", errno);
+    if (const int error = writeAll(target.descriptor, content); error != 0) fail(file, "written", error);
 }
 
 }  // namespace helio

@@ -1,8 +1,9 @@
-#include "engine/image/atomic_file.hpp"
+
 #include "engine/image/backend.hpp"
 #include "engine/image/read_file.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/image.hpp>
 
 #include <fmt/format.h>

@@ -64,16 +64,20 @@ PlacedCamera chooseCamera(Scene& scene, const std::string& nameOrIndex, double a
         const std::string& cameraName = scene.cameras[std::size_t(candidate.camera)].name;
         const std::string& nodeName = scene.nodes[std::size_t(candidate.node)].name;
         if (cameraName == nameOrIndex || nodeName == nameOrIndex) return candidate;
-        names.push_back(cameraName.empty() ? nodeName : cameraName);
+        const std::string& name = cameraName.empty() ? nodeName : cameraName;
+        if (!name.empty()) names.push_back(name);
     }
     std::size_t index = 0;
     const char* end = nameOrIndex.data() + nameOrIndex.size();
     const auto parsed = std::from_chars(nameOrIndex.data(), end, index);
     if (parsed.ec == std::errc() && parsed.ptr == end && index < placed.size()) return placed[index];
-    throw InputError(scene.name, "camera", fmt::format("there is no camera '{}'", nameOrIndex),
-                     placed.empty() ? "the scene has none; leave it out to frame the scene"
-                                    : fmt::format("give one of '{}' or an index from 0 to {}",
-                                                  fmt::join(names, "', '"), placed.size() - 1));
+    std::string remedy = "the scene has none; leave it out to frame the scene";
+    if (!placed.empty()) {
+        const std::string named =
+            names.empty() ? "" : fmt::format("one of '{}' or ", fmt::join(names, "', '"));
+        remedy = fmt::format("give {}an index from 0 to {}", named, placed.size() - 1);
+    }
+    throw InputError(scene.name, "camera", fmt::format("there is no camera '{}'", nameOrIndex), remedy);
 }
 
 }  // namespace helio

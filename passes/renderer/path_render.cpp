@@ -28,6 +28,7 @@ public:
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
         std::uint32_t reached = 0;
+        if (job_.result.cancelled) return reached;
         for (;;) {
             const std::uint32_t end = schedule_.next(reached, job_.seconds());
             if (end == reached || !trace(end, reached)) return reached;
@@ -176,6 +177,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     FirstHits hits;
     if (job.options.auxiliary) hits = tracer.firstHits();
     const std::vector<PassTiming> compiling = tracer.timings();
+    job.notify({.stage = "compile", .fraction = 1});
     job.beginRendering();
 
     result.samples = PathLoop(tracer, target, job, device.info().type == "cpu").run();
@@ -195,6 +197,10 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     result.image = frame.image();
     for (std::size_t i = 3; i < film.variance.size(); i += 4)
         result.nanCount += std::uint64_t(film.variance[i]);
+    if (result.nanCount > 0) {
+        result.warnings.push_back(
+            fmt::format("{} samples were not finite and are left out", result.nanCount));
+    }
     noteCounters(tracer.counters(), result);
     for (const auto& skipped : tracer.skipped()) result.skipped.push_back(skipped);
     job.addTimings(target.timings());

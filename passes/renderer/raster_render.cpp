@@ -2,6 +2,7 @@
 
 #include "passes/renderer/frame.hpp"
 
+#include <fmt/format.h>
 #include <glm/glm.hpp>
 
 #include <algorithm>
@@ -94,6 +95,10 @@ void RasterSession::render(const RasterView& view, RenderJob& job) {
     result.image = frame.image();
     result.samples = 1;
     result.nanCount = std::uint64_t(std::ranges::count_if(color, [](float x) { return x != x; }));
+    if (result.nanCount > 0) {
+        result.warnings.push_back(
+            fmt::format("{} colour values of the picture are not numbers", result.nanCount));
+    }
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
     job.addTimings(plan_.timings(execution));

@@ -24,8 +24,8 @@ void check(const RenderOptions& options) {
     const auto [width, height] = options.size;
     refuse(width == 0 || height == 0, "size", fmt::format("{}x{} pixels", width, height),
            "give at least 1x1");
-    refuse(options.samples == 0 || options.samples > (1u << 24), "samples",
-           fmt::format("{} samples per pixel", options.samples), "give 1 to 16777216");
+    refuse(options.samples == 0 || options.samples >= (1u << 24), "samples",
+           fmt::format("{} samples per pixel", options.samples), "give 1 to 16777215");
     refuse(!(options.maxError >= 0), "maxError", "is negative or not a number", "give 0 for no limit");
     refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
     if (!options.environment) return;

@@ -1,4 +1,6 @@
 #include "commands.hpp"
+#include "console.hpp"
+#include "output_files.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/image.hpp>
@@ -6,7 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -48,25 +52,32 @@ ImageF differenceImage(const ImageF& image, const ImageF& reference, double wors
     return result;
 }
 
-/** METRIC=VALUE pairs that a comparison exceeds. NaN exceeds every limit. */
-std::vector<std::string> exceeded(const std::vector<std::string>& limits,
-                                  const nlohmann::ordered_json& metrics) {
+/** --fail-above METRIC=VALUE */
+struct Limit {
+    std::string metric;
+    double value = 0;
+};
+
+Limit parseLimit(const std::string& text) {
+    static constexpr std::array kMetrics = {"mse", "rmse", "relmse", "mean_ratio", "worst", "nan", "inf"};
+    const std::size_t equals = text.find('=');
+    const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
+    char* end = nullptr;
+    const Limit limit{text.substr(0, equals), std::strtod(number.c_str(), &end)};
+    if (number.empty() || *end != '\0' || std::isnan(limit.value)) {
+        throw CLI::ValidationError("--fail-above", "'" + text + "' is not METRIC=VALUE");
+    }
+    if (std::ranges::find(kMetrics, limit.metric) == kMetrics.end()) {
+        throw CLI::ValidationError("--fail-above", fmt::format("there is no metric '{}'; there are {}",
+                                                               limit.metric, fmt::join(kMetrics, ", ")));
+    }
+    return limit;
+}
+
+/** The limits that a comparison exceeds, a phrase each. NaN exceeds every limit. */
+std::vector<std::string> exceeded(const std::vector<Limit>& limits, const nlohmann::ordered_json& metrics) {
     std::vector<std::string> result;
-    for (const std::string& limit : limits) {
-        const std::size_t equals = limit.find('=');
-        const std::string metric = limit.substr(0, equals);
-        char* end = nullptr;
-        const std::string text = equals == std::string::npos ? "" : limit.substr(equals + 1);
-        const double value = std::strtod(text.c_str(), &end);
-        if (text.empty() || *end != '\0' || std::isnan(value)) {
-            throw CLI::ValidationError("--fail-above", "'" + limit + "' is not METRIC=VALUE");
-        }
-        const bool known = metric == "worst" || (metrics.contains(metric) && metrics[metric].is_number());
-        if (!known) {
-            throw CLI::ValidationError("--fail-above",
-                                       "there is no metric '" + metric +
-                                           "'; there are mse, rmse, relmse, mean_ratio, worst, nan, inf");
-        }
+    for (const auto& [metric, value] : limits) {
         const double actual = (metric == "worst" ? metrics["worst"]["error"] : metrics[metric]).get<double>();
         if (!(actual <= value))
             result.push_back(fmt::format("{} is {:g}, above {:g}", metric, actual, value));
@@ -74,20 +85,48 @@ std::vector<std::string> exceeded(const std::vector<std::string>& limits,
     return result;
 }
 
+enum class Encoding : std::uint8_t { Unknown, Linear, Srgb };
+
+/** How a file of this type holds its values. */
+Encoding encodingOf(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".exr" || extension == ".hdr") return Encoding::Linear;
+    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") return Encoding::Srgb;
+    return Encoding::Unknown;
+}
+
+/** Loads an image to be compared with another: sRGB values that meet linear ones are decoded. */
+ImageF loadToCompare(const std::string& file, const std::string& other) {
+    ImageF image = loadImage(file);
+    if (encodingOf(file) != Encoding::Srgb || encodingOf(other) != Encoding::Linear) return image;
+    say("{} is decoded from sRGB to linear, as {} is linear", file, other);
+    for (std::size_t c = 0; c < image.channels.size(); ++c) {
+        if (image.channels[c] != "R" && image.channels[c] != "G" && image.channels[c] != "B") continue;
+        for (std::size_t i = c; i < image.data.size(); i += image.channels.size()) {
+            image.data[i] = float(srgbDecode(image.data[i]));
+        }
+    }
+    return image;
+}
+
 int compare(const CompareArguments& arguments) {
-    const ImageF image = loadImage(arguments.image);
-    const ImageF reference = loadImage(arguments.reference);
+    std::vector<Limit> limits;
+    for (const std::string& limit : arguments.limits) limits.push_back(parseLimit(limit));
+    if (!arguments.output.empty()) checkImageOutput("--output", arguments.output);
+    const ImageF image = loadToCompare(arguments.image, arguments.reference);
+    const ImageF reference = loadToCompare(arguments.reference, arguments.image);
     const ImageDifference difference = compareImages(image, reference);
     const nlohmann::ordered_json metrics = toJson(difference);
-    const std::vector<std::string> failures = exceeded(arguments.limits, metrics);
+    const std::vector<std::string> failures = exceeded(limits, metrics);
     if (arguments.json) {
-        fmt::print("{}\n", metrics.dump(2));
+        writeOutput(metrics.dump(2) + "\n");
     } else {
-        fmt::print(
+        writeOutput(fmt::format(
             "mse {:.6g}\nrmse {:.6g}\nrelmse {:.6g}\nmean_ratio {:.6g}\nworst {:.6g} at ({}, {})\nnan "
             "{}\ninf {}\n",
             difference.mse, difference.rmse, difference.relmse, difference.meanRatio, difference.worstError,
-            difference.worstX, difference.worstY, difference.nan, difference.inf);
+            difference.worstX, difference.worstY, difference.nan, difference.inf));
     }
     if (!arguments.output.empty()) {
         saveImage(arguments.output, differenceImage(image, reference, difference.worstError));
@@ -100,7 +139,10 @@ int compare(const CompareArguments& arguments) {
 
 void addCompareCommand(CLI::App& app, Command& run) {
     auto arguments = std::make_shared<CompareArguments>();
-    CLI::App* command = app.add_subcommand("compare", "Compare an image with a reference");
+    CLI::App* command = app.add_subcommand(
+        "compare",
+        "Compare an image with a reference, values as stored; a PNG or JPEG against an EXR or "
+        "HDR is decoded from sRGB first");
     command->add_option("IMAGE", arguments->image, "Image to judge")->required();
     command->add_option("REFERENCE", arguments->reference, "What it should be")->required();
     command->add_flag("--json", arguments->json, "Print the figures as JSON");

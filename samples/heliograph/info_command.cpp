@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "console.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/features.hpp>
@@ -14,6 +15,15 @@ namespace helio::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/** Names come from files and may not be UTF-8. */
+std::string dump(const Json& json, int indent = -1) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+void printJson(const Json& json) {
+    writeOutput(dump(json, 2) + "\n");
+}
 
 Json describeDevice(const DeviceInfo& device) {
     Json capabilities = Json::array();
@@ -40,13 +50,13 @@ Json describeDevice(const DeviceInfo& device) {
 }
 
 void printDevice(std::size_t index, const DeviceInfo& device) {
-    fmt::print("[{}] {} ({}, {} {}, Vulkan {}){}\n", index, device.name, device.type, device.driver,
-               device.driverVersion, device.apiVersion, device.usable ? "" : "  REFUSED: " + device.refusal);
+    printLine("[{}] {} ({}, {} {}, Vulkan {}){}", index, device.name, device.type, device.driver,
+              device.driverVersion, device.apiVersion, device.usable ? "" : "  REFUSED: " + device.refusal);
     for (const Capability& capability : device.capabilities) {
-        fmt::print("      {:<3} {:<34} {}\n", capability.present ? "yes" : "no", capability.name,
-                   capability.present
-                       ? capability.value
-                       : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
+        printLine("      {:<3} {:<34} {}", capability.present ? "yes" : "no", capability.name,
+                  capability.present
+                      ? capability.value
+                      : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
     }
 }
 
@@ -86,15 +96,15 @@ Json describeScene(const Scene& scene) {
 void printScene(const Json& scene) {
     for (const auto& [key, value] : scene.items()) {
         if (!value.is_array()) {
-            fmt::print("{}: {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+            printLine("{}: {}", key, value.is_string() ? value.get<std::string>() : dump(value));
             continue;
         }
-        fmt::print("{}:{}\n", key, value.empty() ? " none" : "");
+        printLine("{}:{}", key, value.empty() ? " none" : "");
         for (const Json& entry : value) {
             if (entry.is_object()) {
-                fmt::print("  {}: {}\n", entry["what"].get<std::string>(), entry["why"].get<std::string>());
+                printLine("  {}: {}", entry["what"].get<std::string>(), entry["why"].get<std::string>());
             } else {
-                fmt::print("  {}\n", entry.get<std::string>());
+                printLine("  {}", entry.get<std::string>());
             }
         }
     }
@@ -104,7 +114,7 @@ int info(const std::string& source, bool json) {
     if (!source.empty()) {
         const Json scene = describeScene(load(source));
         if (json) {
-            fmt::print("{}\n", scene.dump(2));
+            printJson(scene);
         } else {
             printScene(scene);
         }
@@ -115,13 +125,13 @@ int info(const std::string& source, bool json) {
         Json result = {
             {"version", std::string(version())}, {"devices", Json::array()}, {"samples", sampleNames()}};
         for (const DeviceInfo& device : devices) result["devices"].push_back(describeDevice(device));
-        fmt::print("{}\n", result.dump(2));
+        printJson(result);
         return Done;
     }
-    fmt::print("Heliograph {}\n", version());
+    printLine("Heliograph {}", version());
     for (std::size_t i = 0; i < devices.size(); ++i) printDevice(i, devices[i]);
-    if (devices.empty()) fmt::print("no Vulkan device; install mesa-vulkan-drivers for a CPU device\n");
-    fmt::print("samples: {}\n", fmt::join(sampleNames(), ", "));
+    if (devices.empty()) printLine("no Vulkan device; install mesa-vulkan-drivers for a CPU device");
+    printLine("samples: {}", fmt::join(sampleNames(), ", "));
     return Done;
 }
 

@@ -1,9 +1,9 @@
 #include "progress_display.hpp"
 
+#include "console.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
-
-#include <cstdio>
 
 namespace helio::cli {
 namespace {
@@ -28,21 +28,20 @@ void ProgressDisplay::update(const Progress& progress) {
     if (quiet_) return;
     if (progress.stage != lastStage_) {
         lastStage_ = progress.stage;
-        if (progress.stage == "compile") fmt::print(stderr, "heliograph: compiling kernels\n");
+        if (progress.stage == "compile") say("compiling kernels");
     }
     if (progress.stage != "render") return;
     if (terminal_) {
-        fmt::print(stderr, "\r\x1b[K{}", describe(progress));
-        std::fflush(stderr);
+        writeError("\r\x1b[K" + describe(progress));
         lineOpen_ = true;
     } else if (progress.seconds >= nextLineAt_) {
-        fmt::print(stderr, "heliograph: {}\n", describe(progress));
+        say("{}", describe(progress));
         nextLineAt_ = progress.seconds * 2;
     }
 }
 
 void ProgressDisplay::finish() {
-    if (lineOpen_) fmt::print(stderr, "\r\x1b[K");
+    if (lineOpen_) writeError("\r\x1b[K");
     lineOpen_ = false;
 }
 

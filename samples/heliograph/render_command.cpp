@@ -1,8 +1,11 @@
 #include "commands.hpp"
+#include "console.hpp"
+#include "output_files.hpp"
 #include "progress_display.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
@@ -10,7 +13,7 @@
 #include <algorithm>
 #include <charconv>
 #include <csignal>
-#include <fstream>
+#include <exception>
 #include <memory>
 
 namespace helio::cli {
@@ -75,41 +78,6 @@ Environment parseEnvironment(const std::string& text) {
     return environment;
 }
 
-/** Refuses, before any work, an output that could not be written after it. */
-void checkOutput(const std::filesystem::path& file, bool image) {
-    if (image) {
-        std::string extension = file.extension().string();
-        for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-        if (extension != ".exr" && extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
-            throw InputError(file.string(), "", "unknown image type '" + extension + "'",
-                             "use .exr, .png or .jpg");
-        }
-    }
-    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder)) {
-        throw InputError(file.string(), "", "the folder does not exist",
-                         "create '" + folder.string() + "' first");
-    }
-    if (std::filesystem::is_directory(file)) {
-        throw InputError(file.string(), "", "is a folder", "name a file");
-    }
-}
-
-/** Writes text whole or not at all. */
-void writeText(const std::filesystem::path& file, const std::string& text) {
-    std::filesystem::path partial = file;
-    partial += ".partial";
-    {
-        std::ofstream stream(partial, std::ios::binary);
-        stream << text;
-        stream.flush();
-        if (!stream)
-            throw InputError(file.string(), "", "cannot be written",
-                             "check the folder's permissions and space");
-    }
-    std::filesystem::rename(partial, file);
-}
-
 /** What the scene asked for and was not done, a line each; what it did not ask for, in one line. */
 void printSkipped(const Scene& scene, const RenderResult& result) {
     const std::vector<SceneFeatures::Absent> absent = SceneFeatures(scene).absent();
@@ -121,45 +89,104 @@ void printSkipped(const Scene& scene, const RenderResult& result) {
         if (notAsked) {
             unneeded += (unneeded.empty() ? "" : ", ") + what;
         } else {
-            fmt::print("left out {}: {}\n", what, why);
+            printLine("left out {}: {}", what, why);
         }
     }
-    if (!unneeded.empty()) fmt::print("unneeded {}\n", unneeded);
+    if (!unneeded.empty()) printLine("unneeded {}", unneeded);
 }
 
 void printSummary(const RenderArguments& arguments, const Scene& scene, const RenderResult& result) {
-    const std::string error = result.error.reliable
-                                  ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})",
-                                                result.error.relmse, result.error.low, result.error.high)
-                                  : fmt::format("{:.3g} (not reliable)", result.error.relmse);
-    for (const std::string& output : arguments.outputs) fmt::print("wrote {}\n", output);
-    if (arguments.outputs.empty()) fmt::print("no -o FILE was given: no image was written\n");
-    fmt::print("device   {}\n", result.device);
-    fmt::print("time     {:.3f} s rendering, {:.3f} s set-up\n", result.seconds, result.setupSeconds);
-    fmt::print("samples  {} per pixel, {}x{} pixels\n", result.samples, result.image.width,
-               result.image.height);
+    if (arguments.outputs.empty()) printLine("no -o FILE was given: no image was written");
+    printLine("device   {}", result.device);
+    printLine("time     {:.3f} s rendering, {:.3f} s set-up", result.seconds, result.setupSeconds);
+    printLine("samples  {} per pixel, {}x{} pixels", result.samples, result.image.width, result.image.height);
     if (arguments.options.pipeline == Pipeline::Path) {
         const RayCounts& rays = result.rays;
         const double total = double(rays.camera + rays.bounce + rays.shadow);
-        fmt::print("rays     {:.3g} M, {:.2f} M/s\n", total * 1e-6,
-                   result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
-        fmt::print("error    relMSE {}\n", error);
+        printLine("rays     {:.3g} M, {:.2f} M/s", total * 1e-6,
+                  result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
+        const ErrorEstimate& error = result.error;
+        printLine("error    relMSE {}", error.reliable
+                                            ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})",
+                                                          error.relmse, error.low, error.high)
+                                            : fmt::format("{:.3g} (not reliable)", error.relmse));
+    } else {
+        printLine("error    not measured: one sample at each pixel's centre");
     }
     printSkipped(scene, result);
 }
 
-int render(RenderArguments& arguments) {
+/** Refuses options that the chosen pipeline would leave without effect on the picture. */
+void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
+    if (options.pipeline == Pipeline::Path) {
+        if (options.cullBackFaces) {
+            throw CLI::ValidationError("--cull", "back is there for --pipeline raster only, so far");
+        }
+        return;
+    }
+    // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
+    for (const char* option : {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--no-nee"}) {
+        if (command.count(option) > 0) {
+            throw CLI::ValidationError(
+                option,
+                "is there for --pipeline path only, the raster pipeline takes one sample at each "
+                "pixel's centre and shades direct light; leave it out");
+        }
+    }
+}
+
+/** Writes every file that can be written and says which; throws the first failure after the last. */
+class OutputWriter {
+public:
+    template <typename Write>
+    void write(const std::string& file, bool isQuiet, const Write& write) {
+        try {
+            write();
+            if (!isQuiet) printLine("wrote {}", file);
+        } catch (const Error& error) {
+            if (failure_) {
+                say("warning: {}", error.what());
+            } else {
+                failure_ = std::current_exception();
+            }
+        }
+    }
+    void throwFailure() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+private:
+    std::exception_ptr failure_;
+};
+
+void handleInterrupts() {
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::signal(SIGTERM, [](int) { interrupted = 1; });
+}
+
+int reportNothingWritten() {
+    say("interrupted before the first sample: nothing was written");
+    return Interrupted;
+}
+
+void reportValidation(Renderer& renderer) {
+    const std::vector<std::string> messages = renderer.device().validationMessages();
+    for (const std::string& message : messages) say("validation: {}", message);
+    if (!messages.empty()) throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
+}
+
+int render(const CLI::App& command, RenderArguments& arguments) {
     RenderOptions& options = arguments.options;
     options.size = parseSize(arguments.size);
     options.nextEventEstimation = !arguments.noNextEvent;
     if (!arguments.environment.empty()) options.environment = parseEnvironment(arguments.environment);
-    for (const std::string& output : arguments.outputs) checkOutput(output, true);
+    checkPipelineOptions(command, options);
+    for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
     for (const std::string& output : {arguments.stats, arguments.graph}) {
-        if (!output.empty()) checkOutput(output, false);
+        if (!output.empty()) checkTextOutput(output);
     }
 
-    std::signal(SIGINT, [](int) { interrupted = 1; });
-    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    handleInterrupts();
     ProgressDisplay display(arguments.quiet);
     options.progress = [&](const Progress& progress) {
         display.update(progress);
@@ -167,26 +194,29 @@ int render(RenderArguments& arguments) {
     };
 
     const Scene scene = load(arguments.scene);
+    if (interrupted != 0) return reportNothingWritten();
     DeviceOptions device;
     device.device = arguments.device;
     device.validation = arguments.validate;
     Renderer renderer(device);
     const RenderResult result = renderer.render(scene, options);
     display.finish();
+    for (const std::string& warning : result.warnings) say("warning: {}", warning);
+    if (result.samples == 0) return reportNothingWritten();
 
-    for (const std::string& output : arguments.outputs) save(output, result);
-    if (!arguments.stats.empty()) writeText(arguments.stats, result.json() + "\n");
-    if (!arguments.graph.empty()) writeText(arguments.graph, renderer.graphviz());
-    for (const std::string& warning : result.warnings)
-        fmt::print(stderr, "heliograph: warning: {}\n", warning);
-    if (!arguments.quiet) printSummary(arguments, scene, result);
-    if (arguments.validate) {
-        const std::vector<std::string> messages = renderer.device().validationMessages();
-        for (const std::string& message : messages)
-            fmt::print(stderr, "heliograph: validation: {}\n", message);
-        if (!messages.empty())
-            throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
+    OutputWriter writer;
+    for (const std::string& output : arguments.outputs) {
+        writer.write(output, arguments.quiet, [&] { save(output, result); });
     }
+    if (!arguments.stats.empty()) {
+        writer.write(arguments.stats, true, [&] { writeTextFile(arguments.stats, result.json() + "\n"); });
+    }
+    if (!arguments.graph.empty()) {
+        writer.write(arguments.graph, true, [&] { writeTextFile(arguments.graph, renderer.graphviz()); });
+    }
+    if (!arguments.quiet) printSummary(arguments, scene, result);
+    writer.throwFailure();
+    if (arguments.validate) reportValidation(renderer);
     return result.cancelled && interrupted != 0 ? Interrupted : Done;
 }
 
@@ -230,7 +260,7 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
     command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
     command->add_option("--spp", options.samples, "Samples per pixel")
-        ->check(CLI::Range(1u, 1u << 24))
+        ->check(CLI::Range(1u, (1u << 24) - 1))
         ->capture_default_str();
     command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")
         ->check(CLI::PositiveNumber);
@@ -262,7 +292,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_flag("--validate", arguments->validate,
                       "Run under Vulkan validation; a message is a failure");
     command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
-    command->callback([arguments, &run] { run = [arguments] { return render(*arguments); }; });
+    command->callback(
+        [arguments, command, &run] { run = [arguments, command] { return render(*command, *arguments); }; });
 }
 
 }  // namespace helio::cli

@@ -25,16 +25,45 @@ expect() {
     pass
 }
 check() { local name=$1; shift; if "$@"; then pass; else miss "$name"; fi; }
+# bash -c with a redirection that fails: the program's messages are lost, its work is not.
+shell() { bash -c "\"$program\" $1"; }
+# Every channel of two images has the same values.
+same() { oiiotool --fail 0 --hardfail 0 --diff "$1" "$2" >/dev/null 2>&1; }
+# interrupt_at PATTERN command...: sends SIGINT once standard error holds the pattern; leaves the exit code.
+interrupt_at() {
+    local pattern=$1; shift
+    : >err.txt  # what an earlier command left there is no sign
+    "$@" >out.txt 2>err.txt &
+    local child=$!
+    for ((tick = 0; tick < 3000; ++tick)); do
+        grep -q "$pattern" err.txt && break
+        kill -0 $child 2>/dev/null || break
+        sleep 0.01
+    done
+    kill -INT $child 2>/dev/null
+    wait $child
+}
 render() { "$program" render sample:cornell --size 64x48 --spp 4 --quiet "$@"; }
 
 expect 'help' 0 'render' "$program" --help
 expect 'version' 0 '^[0-9]+\.[0-9]+\.[0-9]+$' "$program" --version
 expect 'no command' 2 'see heliograph --help' "$program"
+expect 'unknown command' 2 "there is no command 'bench'; there are render" "$program" bench
+expect 'unknown options, the first is named' 2 'error: --scheduler is not known here' "$program" render sample:cornell --scheduler wavefront --denoise
+expect 'unknown option before any command' 2 'error: --fast is not known here' "$program" --fast
 expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell --denoise
 expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler halton
 expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
+expect 'too many samples' 2 '16777215' "$program" render sample:cornell --spp 16777216
+expect 'a path render culls nothing' 2 'raster only' render --cull back
+for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee; do
+    # shellcheck disable=SC2086
+    expect "raster refuses $option" 2 "${option%% *}: is there for --pipeline path only" render --pipeline raster $option
+done
+expect 'raster takes --spp and --seed' 0 'left out samples' "$program" render sample:cornell --size 16x16 --pipeline raster --spp 64 --seed 3
+check 'raster says that its error is not measured' grep -q '^error    not measured' out.txt
 expect 'bad environment' 2 'R,G,B' "$program" render sample:cornell --environment sky.exr
 expect 'missing file' 1 'nothere.gltf' "$program" render nothere.gltf
 expect 'unknown sample' 1 'cornell' "$program" render sample:nothere
@@ -43,11 +72,27 @@ echo 'not json' >bad.gltf
 expect 'malformed file' 1 'bad.gltf' "$program" render bad.gltf
 head -c 100 /dev/urandom >bad.glb
 expect 'malformed binary' 1 'bad.glb' "$program" render bad.glb
-expect 'unknown image type' 1 'unknown image type' render -o a.tif
+expect 'control characters are not printed' 1 'a[?].2Jb' "$program" render $'a\e[2Jb.gltf'
+check 'no escape character' test -z "$(tr -cd '\033' <err.txt)"
+expect 'unknown image type' 2 'unknown image type' render -o a.tif
+mkfifo pipe.png
+expect 'an image is not written into a pipe' 1 'not a regular file' render -o pipe.png
+mkdir readonly && chmod 555 readonly
+drop=()  # root may write anywhere, unless it gives that up
+[ "$(id -u)" -ne 0 ] || drop=(setpriv --bounding-set=-all --inh-caps=-all)
+expect 'a folder that cannot be written to' 1 'the folder cannot be written' "${drop[@]}" "$program" render sample:cornell -o readonly/a.exr
+expect 'a folder that cannot be written to, for statistics' 1 'the folder cannot be written' "${drop[@]}" "$program" render sample:cornell --stats readonly/a.json
 expect 'missing folder' 1 'folder' render -o nofolder/a.exr
 expect 'missing device' 1 'nosuchdevice' render --device nosuchdevice
 expect 'missing device by environment' 1 'nosuchdevice' env HELIOGRAPH_DEVICE=nosuchdevice "$program" render sample:cornell --size 8x8
 expect 'unknown camera' 1 'camera' render --camera nosuchcamera
+cat >unnamed.gltf <<'END'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": [{"camera": 0}, {"camera": 0}],
+ "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]}
+END
+expect 'unnamed cameras' 1 "give an index from 0 to 1$" "$program" render unnamed.gltf --camera nosuchcamera
+cp unnamed.gltf $'not\xffutf8.gltf'
+expect 'info json of a name that is not UTF-8' 0 '"scene"' "$program" info --json $'not\xffutf8.gltf'
 expect 'info' 0 'Vulkan' "$program" info
 expect 'info json' 0 '"capabilities"' "$program" info --json
 expect 'info scene' 0 'triangles' "$program" info sample:cornell
@@ -64,13 +109,60 @@ done
 expect 'compare equal' 0 'rmse 0$' "$program" compare path.exr path.exr
 expect 'compare json' 0 'mean_ratio' "$program" compare path.exr raster.exr --json -o difference.png
 check 'difference is written' test -s difference.png
+expect 'compare decodes PNG against EXR' 0 'decoded from sRGB' "$program" compare path.png path.exr --fail-above nan=0
+check 'only what is linear is decoded' test "$("$program" compare path.png path.png | head -n 1)" = 'mse 0'
+oiiotool path.exr --ch R,G,B --clamp:min=0:max=1 -d float -o clamped.exr
+expect 'a decoded PNG is its EXR, rounded' 0 '' "$program" compare path.png clamped.exr --fail-above worst=0.01
+expect 'compare -o of an unknown type' 2 'unknown image type' "$program" compare path.exr path.exr -o d.tif
+expect 'limits are read before images' 2 'no metric' "$program" compare nothere.exr nothere.exr --fail-above x=1
 expect 'compare fails above' 1 'relmse' "$program" compare path.exr raster.exr --fail-above relmse=1e-9
 expect 'compare unknown metric' 2 'no metric' "$program" compare path.exr path.exr --fail-above x=1
 
 render -o second.exr
-expect 'second run is bit-identical' 0 'worst 0 ' "$program" compare path.exr second.exr
+check 'second run is bit-identical in every channel' same path.exr second.exr
 LP_NUM_THREADS=1 render -o one.exr
-expect 'one driver thread is bit-identical' 0 'worst 0 ' "$program" compare path.exr one.exr
+check 'one driver thread is bit-identical in every channel' same path.exr one.exr
+oiiotool path.exr --addc 0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1e-3 -d float -o other.exr
+check 'one changed channel is seen' test "$(same path.exr other.exr; echo $?)" -ne 0
+
+# Streams that fail: the render is written all the same.
+small='render sample:cornell --size 16x16 --spp 1'
+expect 'full standard error' 0 '' shell "$small -o full.exr 2>/dev/full"
+check 'full standard error: image' test -s full.exr
+expect 'closed standard error' 0 '' shell "$small -o closed.exr 2>&-"
+check 'closed standard error: image' same full.exr closed.exr
+expect 'full standard output' 1 'standard output cannot be written' shell "$small -o full2.exr >/dev/full"
+check 'full standard output: image' same full.exr full2.exr
+expect 'closed standard output' 1 'standard output cannot be written' shell "$small -o closed2.exr >&-"
+check 'closed standard output: image' same full.exr closed2.exr
+expect 'closed standard output, nothing to say' 0 '' shell "$small --quiet -o closed3.exr >&-"
+expect 'full standard output of info' 1 'standard output cannot be written' shell "info >/dev/full"
+expect 'full standard output of help' 1 'standard output cannot be written' shell "--help >/dev/full"
+"$program" $small -o broken.exr 2>err.txt | true
+check 'broken pipe: no signal' test "${PIPESTATUS[0]}" -eq 1
+check 'broken pipe: image' same full.exr broken.exr
+
+# Statistics and graphs: into what is no file, through links, one failure does not stop the rest.
+expect 'statistics to standard output, a pipe' 0 '^  "spp": 1,' shell "$small --quiet --stats /dev/stdout | cat"
+expect 'statistics to standard output, a file' 0 '^  "spp": 1,' shell "$small --stats /dev/stdout"
+check 'with the summary behind them' grep -q '^device ' out.txt
+expect 'statistics to nowhere' 0 '' shell "$small --quiet --stats /dev/null"
+check 'the device is still there' test -c /dev/null
+expect 'statistics to a full device' 1 'No space left' shell "$small --quiet -o kept.exr --stats /dev/full"
+check 'statistics to a full device: image' test -s kept.exr
+mkdir folder && ln -s folder/real.json link.json && ln -s folder/real.exr link.exr
+expect 'outputs through links' 0 '' shell "$small --quiet -o link.exr --stats link.json"
+check 'links stay links' test -L link.json -a -L link.exr -a -s folder/real.json -a -s folder/real.exr
+long=$(printf 'x%.0s' {1..260})
+expect 'one of several outputs fails' 1 'too long' shell "$small -o $long.png -o after.png"
+check 'the one after it is written' test -s after.png
+check 'no temporary is left' test -z "$(find . -name '*.partial')"
+
+echo precious >before.exr; echo precious >before.json
+interrupt_at 'compiling kernels' "$program" render sample:cornell --size 64x48 --spp 1000000 -o before.exr --stats before.json
+check 'Ctrl-C in set-up exits 130' test $? -eq 130
+check 'Ctrl-C in set-up says so' grep -q 'interrupted before the first sample: nothing was written' err.txt
+check 'Ctrl-C in set-up leaves the files' test "$(cat before.exr before.json | sort -u)" = precious
 
 "$program" render sample:cornell --size 64x48 --spp 1000000 --quiet -o cancelled.exr &
 child=$!

@@ -3,6 +3,7 @@
 #include <heliograph/device.hpp>
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/graph.hpp>
 #include <heliograph/image.hpp>
 #include <heliograph/kernel.hpp>
