@@ -3,6 +3,7 @@
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/raster_render.hpp"
 #include "passes/renderer/render_job.hpp"
+#include "passes/renderer/scene_warnings.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/renderer.hpp>
@@ -89,6 +90,7 @@ void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     if (!job.notify({.stage = "load"})) return;
     const View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
+    warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;
     const PackOptions pack =
         path ? PathTracer::packOptions(scene, pathTraceOptions(options)) : rasterPackOptions();

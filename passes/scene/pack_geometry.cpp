@@ -19,11 +19,17 @@ bool anyPrimitive(const Scene& scene, const std::vector<Instance>& instances, Co
     return false;
 }
 
-/** A material's colour textures: those that kernels sample. */
+/** Whether a material has colour textures: those that kernels sample. */
 bool samplesTexture(const Scene& scene, const Primitive& primitive) {
     if (primitive.material < 0) return false;
     const Material& material = scene.materials[std::size_t(primitive.material)];
-    return (material.baseColorTexture || material.emissiveTexture) && !primitive.texcoords.empty();
+    return material.baseColorTexture || material.emissiveTexture;
+}
+
+/** Texture coordinates of a vertex in a set; 0 where the primitive has no such set, or the use no texture. */
+glm::vec2 texcoord(const Primitive& primitive, const TextureUse* use, std::uint32_t vertex) {
+    if (!use || !*use || std::size_t(use->texcoord) >= primitive.texcoords.size()) return glm::vec2(0.0f);
+    return primitive.texcoords[std::size_t(use->texcoord)][vertex];
 }
 
 /** Directions that are normal to a surface transform by the cofactor matrix: it is det(M) M^-T, and stays
@@ -88,6 +94,10 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
             const Primitive& primitive = mesh.primitives[p];
             const std::uint32_t material = primitive.material < 0 ? std::uint32_t(scene.materials.size())
                                                                   : std::uint32_t(primitive.material);
+            const Material* const named =
+                primitive.material < 0 ? nullptr : &scene.materials[std::size_t(primitive.material)];
+            const TextureUse* const baseColor = named ? &named->baseColorTexture : nullptr;
+            const TextureUse* const emissive = named ? &named->emissiveTexture : nullptr;
             for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
                 std::uint32_t index[3] = {primitive.indices[t], primitive.indices[t + 1],
                                           primitive.indices[t + 2]};
@@ -121,9 +131,8 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
                 }
                 if (anyTexcoords)
                     for (std::uint32_t k : index) {
-                        const auto& sets = primitive.texcoords;
-                        const glm::vec2 first = sets.empty() ? glm::vec2(0.0f) : sets[0][k];
-                        packed.texcoords.emplace_back(first, sets.size() > 1 ? sets[1][k] : first);
+                        packed.texcoords.emplace_back(texcoord(primitive, baseColor, k),
+                                                      texcoord(primitive, emissive, k));
                     }
                 if (anyColors)
                     for (std::uint32_t k : index)

@@ -155,11 +155,9 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         // The light sampling density of this material's surfaces, filled in by lights().
         packed.materials.push_back({0.0f, material.metallic, material.roughness, material.alphaCutoff});
         packed.materials.push_back(transformRow(material.baseColorTexture, 0, std::uint32_t(baseTexture)));
-        packed.materials.push_back(
-            transformRow(material.baseColorTexture, 1, std::uint32_t(material.baseColorTexture.texcoord)));
+        packed.materials.push_back(transformRow(material.baseColorTexture, 1, kBaseColorSlot));
         packed.materials.push_back(transformRow(material.emissiveTexture, 0, std::uint32_t(emissiveTexture)));
-        packed.materials.push_back(
-            transformRow(material.emissiveTexture, 1, std::uint32_t(material.emissiveTexture.texcoord)));
+        packed.materials.push_back(transformRow(material.emissiveTexture, 1, kEmissiveSlot));
     }
 }
 

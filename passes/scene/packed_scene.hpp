@@ -18,6 +18,8 @@ namespace helio {
 
 /** Texels per material in PackedScene::materials; shaders/scene/materials.glsl names them. */
 inline constexpr std::uint32_t kMaterialTexels = 7;
+/** Which half of PackedScene::texcoords a material's texture reads: whatever set it names is packed there. */
+inline constexpr std::uint32_t kBaseColorSlot = 0, kEmissiveSlot = 1;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
 
@@ -44,7 +46,8 @@ struct PackedScene {
     std::vector<glm::uvec4> nodes;
     /** 3 texels a g (one per vertex): unit world-space shading normal, 0. Empty where no mesh has normals. */
     std::vector<glm::vec4> normals;
-    /** 3 texels a g: u, v of set 0 and of set 1. Empty where no material in use samples a texture. */
+    /** 3 texels a g: u, v in the set that the material's base colour texture names, then in its emissive
+     * texture's; 0 where the primitive has no such set. Empty where no material in use samples a texture. */
     std::vector<glm::vec4> texcoords;
     /** 3 texels a g: linear colour. Empty where no mesh has colours. */
     std::vector<glm::vec4> colors;

@@ -4,7 +4,7 @@
 #include "shaders/scene/features.glsl"
 
 layout(set = 0, binding = 22) uniform samplerBuffer uNormals;    ///< unit world-space shading normals
-layout(set = 0, binding = 23) uniform samplerBuffer uTexcoords;  ///< u, v of set 0, u, v of set 1
+layout(set = 0, binding = 23) uniform samplerBuffer uTexcoords;  ///< u, v of slot 0, u, v of slot 1
 layout(set = 0, binding = 24) uniform samplerBuffer uColors;     ///< linear RGBA
 
 /** Interpolated shading normal, unit; `face` (unit) where the scene has none or the interpolation vanishes. */
@@ -16,7 +16,7 @@ vec3 shadingNormal(int g, vec3 b, vec3 face) {
     return squared > 1e-12 ? n * inversesqrt(squared) : face;
 }
 
-/** Both sets of texture coordinates. */
+/** Both slots of texture coordinates: whichever sets the triangle's material names. */
 vec4 texcoords(int g, vec3 b) {
     return b.x * texelFetch(uTexcoords, g * 3) + b.y * texelFetch(uTexcoords, g * 3 + 1) +
            b.z * texelFetch(uTexcoords, g * 3 + 2);

@@ -9,7 +9,7 @@
  * 0: base colour RGBA
  * 1: emission RGB (W/(sr m^2)), bits of flags
  * 2: light sampling density per area (1/m^2), metallic, roughness, alpha cutoff
- * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of texcoord set
+ * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of slot of texture coordinates
  * 5, 6: the same of the emissive texture
  */
 layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;

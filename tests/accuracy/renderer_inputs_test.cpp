@@ -73,6 +73,49 @@ TEST(RendererInputs, ASingularCameraIsRefusedByBothPipelines) {
     }
 }
 
+/** Two texels, red and green, left and right. */
+void addTexture(Scene& scene) {
+    scene.images.push_back({"two", 2, 1, std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255}});
+    Texture texture;
+    texture.image = 0;
+    texture.magFilter = texture.minFilter = Filter::Nearest;
+    texture.useMipmaps = false;
+    scene.textures = {texture};
+}
+
+TEST(RendererInputs, TexturesReadTheCoordinateSetTheyName) {
+    for (const Pipeline pipeline : kBoth) {
+        for (int set = 0; set < 5; ++set) {
+            Scene scene = glowingSquare();
+            addTexture(scene);
+            // Set 3 is the green half, the others are the red one.
+            auto& sets = scene.meshes[0].primitives[0].texcoords;
+            for (int s = 0; s < 4; ++s) sets.emplace_back(4, glm::vec2(s == 3 ? 0.75f : 0.25f, 0.5f));
+            Material& material = scene.materials[0];
+            material.emissiveTexture = {0, set, glm::mat3(1.0f)};
+            const auto warned = [](const RenderResult& result) { return !result.warnings.empty(); };
+            const RenderResult emitted = renderer().render(scene, small(pipeline));
+            EXPECT_NEAR(emitted.image.at(8, 8, 0), set == 3 ? 0.0f : 0.5f, 1e-6) << "set " << set;
+            EXPECT_NEAR(emitted.image.at(8, 8, 1), set == 3 ? 0.5f : 0.0f, 1e-6) << "set " << set;
+            EXPECT_EQ(warned(emitted), set == 4) << "set " << set;
+            // The albedo channel is the base colour, here of another set than the emission.
+            material.baseColor = glm::vec4(1.0f);
+            material.baseColorTexture = {0, set, glm::mat3(1.0f)};
+            material.emissiveTexture.texcoord = 2;
+            const RenderResult both = renderer().render(scene, small(pipeline));
+            const std::size_t albedo = std::size_t(both.image.channel("albedo.R"));
+            EXPECT_NEAR(both.image.at(8, 8, albedo), set == 3 ? 0.0f : 1.0f, 1e-6) << "set " << set;
+            EXPECT_NEAR(both.image.at(8, 8, albedo + 1), set == 3 ? 1.0f : 0.0f, 1e-6) << "set " << set;
+            EXPECT_EQ(warned(both), set == 4);
+            if (set != 4) continue;
+            ASSERT_EQ(both.warnings.size(), 1u);
+            EXPECT_EQ(both.warnings[0],
+                      "mesh 0 primitive 0 has no texture coordinate set 4, which material 0 names: it is "
+                      "taken as 0, 0");
+        }
+    }
+}
+
 TEST(RendererInputs, LightBeyondWhatAPictureHoldsIsRefused) {
     for (const Pipeline pipeline : kBoth) {
         Scene scene = glowingSquare();

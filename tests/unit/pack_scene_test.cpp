@@ -106,6 +106,31 @@ TEST(PackScene, TwoTrianglesOfAQuadAreOneLight) {
     }
 }
 
+TEST(PackScene, AnyTwoTextureCoordinateSetsArePacked) {
+    Scene scene = twoInstances();
+    scene.images.push_back({"white", 1, 1, std::vector<std::uint8_t>(4, 255)});
+    scene.textures.push_back({});
+    scene.textures[0].image = 0;
+    Material& material = scene.materials[0];
+    material.emission = glm::vec3(1.0f);
+    material.baseColorTexture = {0, 3, glm::mat3(1.0f)};
+    material.emissiveTexture = {0, 2, glm::mat3(1.0f)};
+    Primitive& primitive = scene.meshes[0].primitives[0];
+    for (int set = 0; set < 4; ++set) primitive.texcoords.emplace_back(4, glm::vec2(set, -set));
+    const auto firstTexcoords = [&] { return packScene(scene).texcoords.at(0); };
+    EXPECT_EQ(firstTexcoords(), glm::vec4(3, -3, 2, -2));
+    // Packed, both textures read the half that holds their set.
+    const PackedScene packed = packScene(scene);
+    EXPECT_EQ(bits(packed.materials[4].w), kBaseColorSlot);
+    EXPECT_EQ(bits(packed.materials[6].w), kEmissiveSlot);
+    material.baseColorTexture.texcoord = 2;
+    EXPECT_EQ(firstTexcoords(), glm::vec4(2, -2, 2, -2));
+    material.baseColorTexture.texcoord = 4;  // not there
+    EXPECT_EQ(firstTexcoords(), glm::vec4(0, 0, 2, -2));
+    primitive.texcoords.clear();
+    EXPECT_EQ(firstTexcoords(), glm::vec4(0));
+}
+
 TEST(PackScene, AliasTableGivesTheWeights) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform;

@@ -1,0 +1,48 @@
+#include "passes/renderer/scene_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace helio {
+namespace {
+
+/** The first set that a texture which is sampled names and the primitive lacks; -1 where there is none. */
+int missingSet(const Material& material, const Primitive& primitive) {
+    const bool emits = material.emission != glm::vec3(0.0f);
+    for (const TextureUse* use : {&material.baseColorTexture, emits ? &material.emissiveTexture : nullptr}) {
+        if (use && *use && std::size_t(use->texcoord) >= primitive.texcoords.size()) return use->texcoord;
+    }
+    return -1;
+}
+
+}  // namespace
+
+void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
+    std::vector<bool> shown(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances()) shown[std::size_t(instance.mesh)] = true;
+    std::string first;
+    std::size_t further = 0;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        const auto& primitives = scene.meshes[m].primitives;
+        for (std::size_t p = 0; shown[m] && p < primitives.size(); ++p) {
+            if (primitives[p].material < 0) continue;
+            const int set = missingSet(scene.materials[std::size_t(primitives[p].material)], primitives[p]);
+            if (set < 0) continue;
+            if (!first.empty()) {
+                ++further;
+                continue;
+            }
+            first = fmt::format(
+                "mesh {} primitive {} has no texture coordinate set {}, which material {} names: it is taken "
+                "as "
+                "0, 0",
+                m, p, set, primitives[p].material);
+        }
+    }
+    if (further > 0) first += fmt::format(" ({} further primitives likewise)", further);
+    if (!first.empty()) warnings.push_back(std::move(first));
+}
+
+}  // namespace helio
