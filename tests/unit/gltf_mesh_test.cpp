@@ -1,6 +1,7 @@
 #include "tests/unit/gltf_support.hpp"
 
 #include <cmath>
+#include <functional>
 
 namespace helio::test {
 namespace {
@@ -201,6 +202,94 @@ TEST_F(Gltf, NamesWhatItDoesNotEvaluate) {
     std::sort(names.begin(), names.end());
     EXPECT_EQ(names, (std::vector<std::string>{"EXT_mesh_gpu_instancing", "KHR_materials_sheen", "animations",
                                                "attribute JOINTS_0", "morph targets", "skins"}));
+}
+
+/** Peak resident memory of the process in bytes since the last call, from /proc. */
+std::size_t peakResident() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) return std::stoul(line.substr(6)) * 1024;
+    return 0;
+}
+void resetPeak() {
+    std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+void expectRefusedWithinMemory(const std::function<void()>& load, std::size_t bytes, const char* place) {
+    resetPeak();
+    const std::size_t before = peakResident();
+    try {
+        load();
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_NE(error.place.find(place), std::string::npos) << error.what();
+        EXPECT_NE(error.fault.find("unfolds"), std::string::npos) << error.what();
+        EXPECT_FALSE(error.remedy.empty());
+    }
+#ifndef __SANITIZE_ADDRESS__  // which keeps what is freed
+    EXPECT_LT(peakResident() - before, 64 * bytes + (std::size_t(256) << 20));
+#else
+    static_cast<void>(before), static_cast<void>(bytes);
+#endif
+}
+
+TEST_F(Gltf, SharedIndicesDoNotUnfoldASmallFile) {
+    GltfDocument file = GltfDocument::triangle();
+    const std::size_t count = 999999;
+    file.primitive()["indices"] = file.addAccessor(std::vector<std::uint8_t>(count, 1), "SCALAR", count);
+    const json shared = file.primitive();
+    for (int p = 1; p < 400; ++p) file.doc["meshes"][0]["primitives"].push_back(shared);
+    const std::string glb = file.glb();
+    const std::string path = write("shared.glb", glb).string();
+    expectRefusedWithinMemory([&] { helio::load(path); }, glb.size() * 2, "meshes[0].primitives[");
+    // Strips unfold threefold.
+    for (json& primitive : file.doc["meshes"][0]["primitives"]) primitive["mode"] = 5;
+    const std::string strips = write("strips.glb", file.glb()).string();
+    expectRefusedWithinMemory([&] { helio::load(strips); }, glb.size() * 2, "meshes[0].primitives[");
+    // A few primitives may share.
+    file.doc["meshes"][0]["primitives"] = json::array({shared, shared, shared});
+    EXPECT_EQ(load(file).triangleCount(), count);
+}
+
+TEST_F(Gltf, AttributesWithoutDataDoNotUnfoldASmallFile) {
+    GltfDocument file = GltfDocument::triangle();
+    const std::size_t count = std::size_t(1) << 22;
+    file.doc["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", "VEC3"}});
+    file.doc["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", "VEC2"}});
+    file.primitive()["attributes"]["POSITION"] = 1;
+    for (int set = 0; set < 20; ++set) file.primitive()["attributes"]["TEXCOORD_" + std::to_string(set)] = 2;
+    expectRefusedWithinMemory([&] { load(file); }, 4096, "meshes[0].primitives[0].attributes.TEXCOORD_");
+}
+
+TEST_F(Gltf, KeepsOnlyVerticesInUseOfASharedAccessor) {
+    GltfDocument file;
+    std::vector<float> positions, normals;
+    for (int i = 0; i < 100; ++i) {
+        positions.insert(positions.end(), {float(i), 0, 0});
+        normals.insert(normals.end(), {0, i % 2 ? 1.0f : -1.0f, 0});
+    }
+    const int position = file.addAccessor(positions, "VEC3", 100),
+              normal = file.addAccessor(normals, "VEC3", 100);
+    const int few = file.addAccessor<std::uint8_t>({97, 3, 40, 40, 3, 98}, "SCALAR", 6);
+    std::vector<std::uint8_t> half;
+    for (int i = 0; i < 51; ++i) half.push_back(std::uint8_t(i));
+    const int many = file.addAccessor(half, "SCALAR", 51);
+    const json attributes = {{"POSITION", position}, {"NORMAL", normal}};
+    file.doc["meshes"] =
+        json::array({{{"primitives", json::array({{{"attributes", attributes}, {"indices", few}},
+                                                  {{"attributes", attributes}, {"indices", many}}})}}});
+    file.doc["nodes"] = json::array({{{"mesh", 0}}});
+    const Scene scene = load(file);
+    const Primitive& small = scene.meshes[0].primitives[0];
+    ASSERT_EQ(small.positions.size(), 4u);
+    EXPECT_EQ(small.indices, (std::vector<std::uint32_t>{2, 0, 1, 1, 0, 3}));
+    const float x[] = {3, 40, 97, 98}, y[] = {1, -1, 1, -1};
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(small.positions[i].x, x[i]);
+        EXPECT_EQ(small.normals[i].y, y[i]);
+    }
+    EXPECT_EQ(scene.meshes[0].primitives[1].positions.size(), 100u);
+    EXPECT_EQ(scene.meshes[0].primitives[1].indices[50], 50u);
 }
 
 }  // namespace

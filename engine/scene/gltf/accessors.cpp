@@ -107,6 +107,7 @@ bool fits(std::size_t offset, std::size_t count, std::size_t stride, std::size_t
 }  // namespace
 
 Asset::Asset(Container container) : container_(std::move(container)), model_(parseModel(container_)) {
+    bytes_ = container_.size;
     const auto found = container_.document.find("buffers");
     if (found == container_.document.end()) return;
     for (std::size_t i = 0; i < found->size(); ++i) {
@@ -127,6 +128,7 @@ Asset::Asset(Container container) : container_(std::move(container)), model_(par
                              "write the buffer again; it may be cut off");
         }
         bytes.resize(length);
+        bytes_ += bytes.size();
         buffers_.push_back(std::move(bytes));
     }
     container_.bytes = {};
@@ -210,6 +212,10 @@ Asset::Layout Asset::layout(int index) const {
     return layout;
 }
 
+void Asset::check(int accessor) const {
+    layout(accessor);
+}
+
 template <class Store>
 void Asset::read(int index, const Layout& layout, Store&& store) const {
     const tinygltf::Accessor& accessor = layout.accessor;
@@ -256,7 +262,7 @@ std::vector<float> Asset::floats(int index, int components, const std::string& p
     return values;
 }
 
-std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) const {
+void Asset::checkIndices(int index, const std::string& place) const {
     const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
     const bool isUnsigned = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                             accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
@@ -265,6 +271,12 @@ std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) c
         throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
                          "give a SCALAR accessor of unsigned integers");
     }
+    layout(index);
+}
+
+std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) const {
+    checkIndices(index, place);
+    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
     const Layout from = layout(index);
     std::vector<std::uint32_t> values(accessor.count);
     read(index, from,

@@ -31,6 +31,12 @@ public:
     std::vector<float> floats(int accessor, int components, const std::string& place) const;
     /** An accessor of unsigned integers. */
     std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;
+    /** Bytes of the file and of its buffers: what it may unfold to is in proportion. */
+    std::size_t bytes() const { return bytes_; }
+    /** Refuses an accessor whose elements do not all lie in its buffers: its count may then be trusted. */
+    void check(int accessor) const;
+    /** The same for one that must hold indices. */
+    void checkIndices(int accessor, const std::string& place) const;
     std::size_t count(int accessor) const { return model_.accessors[std::size_t(accessor)].count; }
 
 private:
@@ -43,6 +49,7 @@ private:
     Container container_;
     tinygltf::Model model_;
     std::vector<std::vector<std::byte>> buffers_;
+    std::size_t bytes_ = 0;
 };
 
 }  // namespace helio::gltf

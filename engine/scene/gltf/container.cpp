@@ -109,6 +109,7 @@ Container readContainer(const std::string& file) {
     Container container;
     container.file = file;
     container.bytes = readFile(file);
+    container.size = container.bytes.size();
     if (container.bytes.empty())
         throw InputError(file, "", "is empty", "give a .gltf or .glb file, or write this one again");
     const std::string_view text(reinterpret_cast<const char*>(container.bytes.data()),

@@ -10,23 +10,37 @@
 namespace helio::gltf {
 namespace {
 
-/** Primitives may share an accessor, so that a small file unfolds to any size. */
-constexpr std::size_t maximumVertices = std::size_t(1) << 28;
+/** Primitives may share an accessor, and an accessor need have no data, so that a small file unfolds to any
+ * size. Unfolded meshes stay in proportion to what was read: without sharing the factor is at most 12 (a
+ * strip of one-byte indices); the constant leaves room for small files that share on purpose. */
+class MemoryBudget {
+public:
+    explicit MemoryBudget(const Asset& asset)
+        : asset_(asset), most_(asset.bytes() * 32 + (std::size_t(192) << 20)) {}
 
-template <class Vector>
-std::vector<Vector> vectors(const std::vector<float>& values) {
-    constexpr auto length = std::size_t(Vector::length());
-    std::vector<Vector> result(values.size() / length);
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[i * length + c];
+    /** Takes memory that stays, and asks for some that goes again. Refuses before either is there. */
+    void take(const std::string& place, std::size_t kept, std::size_t transient) {
+        if (kept > most_ || transient > most_ || used_ + kept + transient > most_) {
+            throw InputError(
+                asset_.file(), place,
+                fmt::format("unfolds the meshes to more than {} MiB, for a file and buffers of {} bytes",
+                            most_ >> 20, asset_.bytes()),
+                "let fewer primitives share an accessor, and give accessors data");
+        }
+        used_ += kept;
     }
-    return result;
-}
+
+private:
+    const Asset& asset_;
+    std::size_t most_;
+    std::size_t used_ = 0;
+};
 
 /** glTF 2.0, section 3.7.2.1: three indices per triangle of a list, strip or fan. */
-std::vector<std::uint32_t> triangles(const std::vector<std::uint32_t>& v, int mode) {
+std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, int mode) {
     if (mode == TINYGLTF_MODE_TRIANGLES) return v;
     std::vector<std::uint32_t> result;
+    result.reserve(v.size() < 3 ? 0 : (v.size() - 2) * 3);
     for (std::size_t i = 0; i + 2 < v.size(); ++i) {
         if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
             result.insert(result.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
@@ -78,8 +92,8 @@ void fixTangents(Primitive& primitive) {
 
 class PrimitiveBuilder {
 public:
-    PrimitiveBuilder(const Asset& asset, helio::Scene& scene, std::string place, std::size_t& vertices)
-        : asset_(asset), scene_(scene), place_(std::move(place)), vertices_(vertices) {}
+    PrimitiveBuilder(const Asset& asset, helio::Scene& scene, std::string place, MemoryBudget& memory)
+        : asset_(asset), scene_(scene), place_(std::move(place)), memory_(memory) {}
 
     Primitive build(const tinygltf::Primitive& from) {
         Primitive primitive;
@@ -89,38 +103,65 @@ public:
             skip(scene_, place_, "it has no POSITION");
             return primitive;
         }
+        asset_.check(position->second);
         size_ = asset_.count(position->second);
-        primitive.positions = vectors<glm::vec3>(attribute("POSITION", position->second, 3));
-        vertices_ += size_;
-        if (vertices_ > maximumVertices) {
-            throw InputError(asset_.file(), place_, "brings the file's vertices above 2^28",
-                             "split the file");
-        }
-        readAttributes(from, primitive);
         readIndices(from, primitive);
+        keepUsedVertices(primitive);
+        primitive.positions = attribute<glm::vec3>("POSITION", position->second);
+        readAttributes(from, primitive);
         fixNormals(primitive);
         fixTangents(primitive);
         return primitive;
     }
 
 private:
-    std::vector<float> attribute(const std::string& name, int accessor, int components) const {
+    /** Primitives often share the vertices of a whole file and use a few each: where a primitive uses fewer
+     * than half of them, only those are kept, in their order. */
+    void keepUsedVertices(Primitive& primitive) {
+        kept_.clear();
+        std::vector<bool> isUsed(size_, false);
+        for (const std::uint32_t index : primitive.indices) isUsed[index] = true;
+        const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), true));
+        if (used >= size_ - used) return;
+        memory_.take(place_, 0, size_ * sizeof(std::uint32_t) + used * sizeof(std::uint32_t));
+        std::vector<std::uint32_t> place(size_);
+        kept_.reserve(used);
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (!isUsed[i]) continue;
+            place[i] = std::uint32_t(kept_.size());
+            kept_.push_back(std::uint32_t(i));
+        }
+        for (std::uint32_t& index : primitive.indices) index = place[index];
+    }
+
+    template <class Vector>
+    std::vector<Vector> attribute(const std::string& name, int accessor) const {
         const std::string place = place_ + ".attributes." + name;
         if (asset_.count(accessor) != size_) {
             throw InputError(asset_.file(), place,
                              fmt::format("has {} elements, POSITION {}", asset_.count(accessor), size_),
                              "give every attribute one element per vertex");
         }
-        return asset_.floats(accessor, components, place);
+        asset_.check(accessor);
+        const std::size_t count = kept_.empty() ? size_ : kept_.size();
+        constexpr auto length = std::size_t(Vector::length());
+        memory_.take(place, count * sizeof(Vector), size_ * length * sizeof(float));
+        const std::vector<float> values = asset_.floats(accessor, int(length), place);
+        std::vector<Vector> result(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t vertex = kept_.empty() ? i : kept_[i];
+            for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[vertex * length + c];
+        }
+        return result;
     }
 
     void readAttributes(const tinygltf::Primitive& from, Primitive& primitive) {
         for (const auto& [name, accessor] : from.attributes) {
             if (name == "POSITION") continue;
             if (name == "NORMAL") {
-                primitive.normals = vectors<glm::vec3>(attribute(name, accessor, 3));
+                primitive.normals = attribute<glm::vec3>(name, accessor);
             } else if (name == "TANGENT") {
-                primitive.tangents = vectors<glm::vec4>(attribute(name, accessor, 4));
+                primitive.tangents = attribute<glm::vec4>(name, accessor);
             } else if (name == "COLOR_0") {
                 readColors(accessor, primitive);
             } else if (!name.starts_with("TEXCOORD_") && !name.starts_with("_")) {
@@ -134,23 +175,29 @@ private:
             const std::string name = fmt::format("TEXCOORD_{}", set);
             const auto found = from.attributes.find(name);
             if (found == from.attributes.end()) break;
-            primitive.texcoords.push_back(vectors<glm::vec2>(attribute(name, found->second, 2)));
+            primitive.texcoords.push_back(attribute<glm::vec2>(name, found->second));
         }
     }
 
     void readColors(int accessor, Primitive& primitive) const {
         if (asset_.model().accessors[std::size_t(accessor)].type == TINYGLTF_TYPE_VEC4) {
-            primitive.colors = vectors<glm::vec4>(attribute("COLOR_0", accessor, 4));
+            primitive.colors = attribute<glm::vec4>("COLOR_0", accessor);
             return;
         }
-        for (const glm::vec3& color : vectors<glm::vec3>(attribute("COLOR_0", accessor, 3))) {
-            primitive.colors.emplace_back(color, 1.0f);
-        }
+        const std::vector<glm::vec3> colors = attribute<glm::vec3>("COLOR_0", accessor);
+        memory_.take(place_ + ".attributes.COLOR_0", colors.size() * (sizeof(glm::vec4) - sizeof(glm::vec3)),
+                     colors.size() * sizeof(glm::vec3));
+        primitive.colors.reserve(colors.size());
+        for (const glm::vec3& color : colors) primitive.colors.emplace_back(color, 1.0f);
     }
 
     void readIndices(const tinygltf::Primitive& from, Primitive& primitive) {
         std::vector<std::uint32_t> indices;
         const std::string place = place_ + ".indices";
+        if (from.indices >= 0) asset_.checkIndices(from.indices, place);
+        const std::size_t count = from.indices >= 0 ? asset_.count(from.indices) : size_;
+        const std::size_t unfolded = from.mode == TINYGLTF_MODE_TRIANGLES ? count : count * 3;
+        memory_.take(place, unfolded * sizeof(std::uint32_t), count * sizeof(std::uint32_t));
         if (from.indices >= 0) {
             indices = asset_.indices(from.indices, place);
             const auto wrong = std::find_if(indices.begin(), indices.end(),
@@ -170,20 +217,21 @@ private:
                                      indices.size()));
             indices.resize(indices.size() / 3 * 3);
         }
-        primitive.indices = triangles(indices, from.mode);
+        primitive.indices = triangles(std::move(indices), from.mode);
     }
 
     const Asset& asset_;
     helio::Scene& scene_;
     std::string place_;
-    std::size_t& vertices_;
-    std::size_t size_ = 0;
+    MemoryBudget& memory_;
+    std::size_t size_ = 0;             ///< vertices in the file
+    std::vector<std::uint32_t> kept_;  ///< those that are kept; empty for all
 };
 
 }  // namespace
 
 void buildMeshes(const Asset& asset, helio::Scene& scene) {
-    std::size_t vertices = 0;
+    MemoryBudget memory(asset);
     for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
         const tinygltf::Mesh& from = asset.model().meshes[m];
         Mesh mesh;
@@ -198,7 +246,7 @@ void buildMeshes(const Asset& asset, helio::Scene& scene) {
                 continue;
             }
             for (const auto& [name, value] : primitive.extensions) skip(scene, name, "is not supported");
-            Primitive built = PrimitiveBuilder(asset, scene, place, vertices).build(primitive);
+            Primitive built = PrimitiveBuilder(asset, scene, place, memory).build(primitive);
             if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
         }
         scene.meshes.push_back(std::move(mesh));
