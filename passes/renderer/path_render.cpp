@@ -28,7 +28,6 @@ public:
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
         std::uint32_t reached = 0;
-        if (job_.result.cancelled) return reached;
         for (;;) {
             const std::uint32_t end = schedule_.next(reached, job_.seconds());
             if (end == reached || !trace(end, reached)) return reached;
@@ -177,7 +176,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     FirstHits hits;
     if (job.options.auxiliary) hits = tracer.firstHits();
     const std::vector<PassTiming> compiling = tracer.timings();
-    job.notify({.stage = "compile", .fraction = 1});
+    if (!job.notify({.stage = "compile"})) return;
     job.beginRendering();
 
     result.samples = PathLoop(tracer, target, job, device.info().type == "cpu").run();

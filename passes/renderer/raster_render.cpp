@@ -112,6 +112,7 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
         scene.raster.reset();
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);
     }
+    if (!job.notify({.stage = "compile"})) return;
     scene.raster->render(rasterView, job);
 }
 

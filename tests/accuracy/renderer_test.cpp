@@ -190,6 +190,26 @@ TEST(Renderer, CancelledBeforeTheFirstSampleIsBlack) {
     }
 }
 
+TEST(Renderer, CancelledWhileKernelsCompileIsBlack) {
+    for (const Pipeline pipeline : {Pipeline::Path, Pipeline::Raster}) {
+        RenderOptions options = small(8);
+        options.pipeline = pipeline;
+        int calls = 0;
+        options.progress = [&](const Progress& progress) {
+            EXPECT_NE(progress.stage, "render");
+            return ++calls < 3;  // load, compile, compiled
+        };
+        const RenderResult result = renderer().render(cornell(), options);
+        EXPECT_TRUE(result.cancelled);
+        EXPECT_EQ(result.samples, 0u);
+        EXPECT_EQ(result.image.data, std::vector<float>(32 * 32 * 3, 0.0f));
+    }
+}
+
+TEST(Renderer, RefusesMoreSamplesThanTheStateCounts) {
+    EXPECT_THROW(renderer().render(cornell(), small(1u << 24)), InputError);
+}
+
 TEST(Renderer, ProgressGoesFromLoadToTheEnd) {
     RenderOptions options = small(256);
     std::vector<Progress> seen;
@@ -198,10 +218,11 @@ TEST(Renderer, ProgressGoesFromLoadToTheEnd) {
         return true;
     };
     renderer().render(cornell(), options);
-    ASSERT_GE(seen.size(), 4u);
+    ASSERT_GE(seen.size(), 5u);
     EXPECT_EQ(seen[0].stage, "load");
     EXPECT_EQ(seen[1].stage, "compile");
-    for (std::size_t i = 2; i < seen.size(); ++i) {
+    EXPECT_EQ(seen[2].stage, "compile");  // set-up is over
+    for (std::size_t i = 3; i < seen.size(); ++i) {
         EXPECT_EQ(seen[i].stage, "render");
         EXPECT_GE(seen[i].samples, seen[i - 1].samples);
         EXPECT_GT(seen[i].raysPerSecond, 0);

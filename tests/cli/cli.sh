@@ -158,11 +158,13 @@ expect 'one of several outputs fails' 1 'too long' shell "$small -o $long.png -o
 check 'the one after it is written' test -s after.png
 check 'no temporary is left' test -z "$(find . -name '*.partial')"
 
-echo precious >before.exr; echo precious >before.json
-interrupt_at 'compiling kernels' "$program" render sample:cornell --size 64x48 --spp 1000000 -o before.exr --stats before.json
-check 'Ctrl-C in set-up exits 130' test $? -eq 130
-check 'Ctrl-C in set-up says so' grep -q 'interrupted before the first sample: nothing was written' err.txt
-check 'Ctrl-C in set-up leaves the files' test "$(cat before.exr before.json | sort -u)" = precious
+for pipeline in path raster; do
+    echo precious >before.exr; echo precious >before.json
+    interrupt_at 'compiling kernels' "$program" render sample:cornell --size 64x48 --spp 1000000 --pipeline $pipeline -o before.exr --stats before.json
+    check "$pipeline, Ctrl-C in set-up exits 130" test $? -eq 130
+    check "$pipeline, Ctrl-C in set-up says so" grep -q 'interrupted before the first sample: nothing was written' err.txt
+    check "$pipeline, Ctrl-C in set-up leaves the files" test "$(cat before.exr before.json | sort -u)" = precious
+done
 
 "$program" render sample:cornell --size 64x48 --spp 1000000 --quiet -o cancelled.exr &
 child=$!

@@ -22,7 +22,7 @@ enum class SamplerKind : std::uint8_t { Sobol, Independent };
 
 /** State of a running render, for progress displays. */
 struct Progress {
-    std::string stage;          ///< "load", "compile", "render"
+    std::string stage;          ///< "load", "compile" (before and after set-up), "render"
     double fraction = 0;        ///< 0..1 of the samples
     std::uint32_t samples = 0;  ///< per pixel, finished
     double seconds = 0;         ///< rendering so far
