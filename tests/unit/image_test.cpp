@@ -1,17 +1,22 @@
 #include "engine/image/backend.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/image.hpp>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 namespace helio {
@@ -283,6 +288,41 @@ TEST_F(Images, DecodingSpreadsToRgbaAsStored) {
     }
     EXPECT_NE(decodeImage(std::as_bytes(std::span(file.data(), file.size() / 2)), decoded), "");
     EXPECT_NE(decodeImage({}, decoded), "");
+}
+
+TEST_F(Images, DoNotReplaceWhatIsNoRegularFile) {
+    const fs::path pipe = folder_ / "pipe.exr";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    fs::create_symlink(pipe, folder_ / "link.exr");
+    for (const fs::path& file : {pipe, folder_ / "link.exr"}) {
+        EXPECT_THROW(saveImage(file, {1, 1, {"R"}, {1}, {}}), InputError);
+    }
+    EXPECT_TRUE(fs::is_fifo(pipe));
+    EXPECT_TRUE(partials().empty());
+}
+
+TEST_F(Images, TextGoesIntoPipesAndReplacesFiles) {
+    const fs::path pipe = folder_ / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(reader, 0);
+    writeTextFile(pipe, "through");
+    std::array<char, 16> read{};
+    EXPECT_EQ(::read(reader, read.data(), read.size()), 7);
+    EXPECT_STREQ(read.data(), "through");
+    ::close(reader);
+    EXPECT_TRUE(fs::is_fifo(pipe));
+
+    const fs::path file = folder_ / "text";
+    for (const char* text : {"a longer text", "short"}) {
+        writeTextFile(file, text);
+        std::ifstream in(file);
+        EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), text);
+    }
+    EXPECT_THROW(writeTextFile("/dev/full", "text"), InputError);
+    EXPECT_THROW(writeTextFile(folder_, "text"), InputError);
+    EXPECT_THROW(writeTextFile(folder_ / "absent" / "text", "text"), InputError);
+    EXPECT_TRUE(partials().empty());
 }
 
 TEST(Srgb, IsExactAndInverse) {
