@@ -1,5 +1,4 @@
 # cmake --install: the library, its public headers, and a package for find_package(heliograph).
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(heliograph_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/heliograph)

@@ -22,7 +22,7 @@ public:
             word(x);
         }
         std::uint64_t rest = 0;
-        std::memcpy(&rest, at, size);
+        if (size > 0) std::memcpy(&rest, at, size);  // an empty vector has no address
         word(rest);
     }
     template <typename T>
