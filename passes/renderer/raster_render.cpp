@@ -106,8 +106,11 @@ void RasterSession::render(const RasterView& view, RenderJob& job) {
 }
 
 void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job) {
-    const RasterView rasterView = makeRasterView(view.transform, view.camera, job.options.size, 0,
-                                                 farthestDistance(view.transform, scene.bounds));
+    const double farthest = farthestDistance(view.transform, scene.bounds);
+    // The default near distance comes from the camera's znear, which a tiny scene may lie wholly before.
+    const bool isTiny = view.camera.perspective && farthest < double(view.camera.znear);
+    const RasterView rasterView =
+        makeRasterView(view.transform, view.camera, job.options.size, isTiny ? 1e-6 * farthest : 0, farthest);
     if (!scene.raster || !scene.raster->fits(job.options)) {
         scene.raster.reset();
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);

@@ -97,6 +97,7 @@ void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     PreparedScene& prepared = scenes.prepare(scene, environment, pack);
     job.result.features = prepared.features;
     job.result.skipped = prepared.skipped;
+    warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
     if (!job.notify({.stage = "compile"})) return;
     if (path) {
         renderPaths(device, prepared, view, film(options.size), job);

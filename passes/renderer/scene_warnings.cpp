@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace helio {
@@ -43,6 +44,28 @@ void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
     }
     if (further > 0) first += fmt::format(" ({} further primitives likewise)", further);
     if (!first.empty()) warnings.push_back(std::move(first));
+}
+
+void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vector<std::string>& warnings) {
+    if (bounds.empty()) return;
+    double reach = 0;
+    for (const glm::dvec3& point : {bounds.lower, bounds.upper, eye})
+        reach = std::max({reach, std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+    if (!(reach <= kLargestCoordinate)) {
+        warnings.push_back(fmt::format(
+            "the scene or its camera reaches to {:.3g} from the origin: above {:g} products of "
+            "coordinates leave the range of single precision and surfaces may be missing; scale the "
+            "scene down",
+            reach, kLargestCoordinate));
+    }
+    const glm::dvec3 size = bounds.upper - bounds.lower;
+    const double extent = std::max({size.x, size.y, size.z});
+    if (extent < kSmallestExtent) {
+        warnings.push_back(fmt::format(
+            "the scene is {:.3g} across: below {:g} products of its edges leave the range of single "
+            "precision and surfaces may be missing; scale the scene up",
+            extent, kSmallestExtent));
+    }
 }
 
 }  // namespace helio

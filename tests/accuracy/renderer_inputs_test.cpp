@@ -2,10 +2,13 @@
 #include "tests/support/device.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/image.hpp>
 #include <heliograph/renderer.hpp>
+#include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace helio {
@@ -126,6 +129,42 @@ TEST(RendererInputs, LightBeyondWhatAPictureHoldsIsRefused) {
         RenderOptions options = small(pipeline);
         options.environment = Environment{glm::vec3(0x1.000002p100f), -1};
         EXPECT_THROW(renderer().render(glowingSquare(), options), InputError);
+    }
+}
+
+/** A scene with all its distances times 2^power; pictures must not change. */
+Scene scaled(Scene scene, int power) {
+    Node root;
+    root.scale = glm::vec3(std::ldexp(1.0f, power));
+    root.children = scene.roots;
+    scene.nodes.push_back(root);
+    scene.roots = {int(scene.nodes.size()) - 1};
+    return scene;
+}
+
+TEST(RendererInputs, PicturesAreRightAtEveryScaleThatIsNotWarnedOf) {
+    const Scene scene = load("sample:cornell");
+    const Scene::Bounds bounds = scene.bounds();
+    const glm::dvec3 size = bounds.upper - bounds.lower;
+    const double extent = std::max({size.x, size.y, size.z});
+    const glm::dvec3 far = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    const glm::dvec3 eye = glm::abs(glm::dvec3(scene.placedCameras().at(0).transform[3]));
+    const double reach = std::max({far.x, far.y, far.z, eye.x, eye.y, eye.z});
+    const int smallest = int(std::ceil(std::log2(1e-9 / extent)));
+    const int largest = int(std::floor(std::log2(1e11 / reach)));
+    for (const Pipeline pipeline : kBoth) {
+        const RenderResult truth = renderer().render(scene, small(pipeline));
+        for (const int power : {smallest, -10, 10, largest}) {
+            const RenderResult result = renderer().render(scaled(scene, power), small(pipeline));
+            EXPECT_LT(compareImages(result.image, truth.image).relmse, 1e-9) << "2^" << power;
+            EXPECT_TRUE(result.warnings.empty()) << result.warnings[0];
+        }
+        for (const int power : {smallest - 1, largest + 1}) {
+            const RenderResult result = renderer().render(scaled(scene, power), small(pipeline));
+            EXPECT_EQ(result.warnings.size(), 1u) << "2^" << power;
+            if (result.warnings.empty()) continue;
+            EXPECT_NE(result.warnings[0].find("scale the scene"), std::string::npos) << result.warnings[0];
+        }
     }
 }
 
