@@ -5,6 +5,9 @@
 
 namespace helio::cli {
 
+/** Whether an image file takes more than R, G and B. */
+bool holdsEveryChannel(const std::filesystem::path& file);
+
 /** An image: its type must be known (else wrong usage of the option) and its folder be there and writable. */
 void checkImageOutput(const std::string& option, const std::filesystem::path& file);
 

@@ -186,6 +186,9 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         if (!output.empty()) checkTextOutput(output);
     }
 
+    // Only EXR files hold more than the picture: without one, the pass of first hits is not even compiled.
+    options.auxiliary = std::ranges::any_of(arguments.outputs, holdsEveryChannel);
+
     handleInterrupts();
     ProgressDisplay display(arguments.quiet);
     options.progress = [&](const Progress& progress) {

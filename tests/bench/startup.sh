@@ -15,7 +15,7 @@ median() { sort -g | sed -n "$(((runs + 1) / 2))p"; }
 render() {  # render SPP: one process; appends wall, set-up and render seconds
     local start end
     start=$(date +%s%N)
-    "$program" render sample:cornell --size 256x256 --spp "$1" -o "$scratch/out.exr" --stats "$scratch/stats.json" --quiet
+    "$program" render sample:cornell --size 256x256 --spp "$1" -o "$scratch/out.png" --stats "$scratch/stats.json" --quiet
     end=$(date +%s%N)
     echo "$(((end - start) / 1000000))" >>"$scratch/wall"
     field setup_seconds >>"$scratch/setup"
