@@ -174,6 +174,16 @@ wait $child
 check 'Ctrl-C exits 130' test $? -eq 130
 check 'Ctrl-C writes what is done' test -s cancelled.exr
 
+# A warm process compiles nothing: no cache, the driver's or Heliograph's, gains or rewrites a file.
+caches() { find warm -type f -printf '%P %s %T@\n' | sort; }
+warm_render() { MESA_SHADER_CACHE_DIR=$PWD/warm/mesa XDG_CACHE_HOME=$PWD/warm/cache render -o warm.exr "$@"; }
+mkdir -p warm
+warm_render
+caches >cold.txt
+check 'a cold process fills the caches' test -s cold.txt
+warm_render --seed 7
+check 'a warm process compiles nothing' cmp -s cold.txt <(caches)
+
 finished=0
 for delay in 1 2 3 4 5 6 8 10 100; do  # tenths of a second
     "$program" render sample:cornell --size 256x256 --spp 1 --quiet -o killed.exr &
