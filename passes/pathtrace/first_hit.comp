@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-/** See FirstHitParameters in passes/pathtrace/path_tracer.cpp. */
+/** See FirstHitParameters in passes/pathtrace/parameters.hpp. */
 layout(push_constant) uniform Parameters {
     CameraFrame camera;
     uvec2 size;

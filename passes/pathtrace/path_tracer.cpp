@@ -1,6 +1,7 @@
 #include "passes/pathtrace/path_tracer.hpp"
 
 #include "passes/pathtrace/camera_frame.hpp"
+#include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
 
 #include <heliograph/error.hpp>
@@ -14,27 +15,6 @@
 
 namespace helio {
 namespace {
-
-/** Push constants of trace.comp. */
-struct TraceParameters {
-    CameraFrame camera;
-    glm::vec4 environment;
-    std::array<std::uint32_t, 2> size;
-    std::uint32_t sampleEnd;
-    std::uint32_t seed;
-    std::uint32_t maxDepth;
-    std::uint32_t countCut;
-    std::uint32_t budget;
-    std::uint32_t begin;
-};
-static_assert(sizeof(TraceParameters) == 112);
-
-/** Push constants of first_hit.comp. */
-struct FirstHitParameters {
-    CameraFrame camera;
-    std::array<std::uint32_t, 2> size;
-};
-static_assert(sizeof(FirstHitParameters) == 72);
 
 /** uCounters of trace.comp. */
 struct DeviceCounters {

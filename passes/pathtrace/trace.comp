@@ -19,7 +19,7 @@
 
 layout(local_size_x = 64) in;
 
-/** See TraceParameters in passes/pathtrace/path_tracer.cpp. */
+/** See TraceParameters in passes/pathtrace/parameters.hpp. */
 layout(push_constant) uniform Parameters {
     CameraFrame camera;
     vec4 environment;   ///< radiance of rays that leave the scene
