@@ -92,7 +92,7 @@ TEST(OpenDevice, BelowVulkan13IsRefusedWithTheReasonAndLogged) {
     const std::string name = listDevices().front().name;
     auto finished = runProgram(lacking("vulkan13"), kProbe + " open auto");
     EXPECT_EQ(finished.status, 1);
-    EXPECT_NE(finished.output.find("heliograph: info: device 0 '" + name +
+    EXPECT_NE(finished.output.find("heliograph: warning: device 0 '" + name +
                                    "' is refused: apiVersion is only 1.2.0 and 1.3 is needed\n"),
               std::string::npos)
         << finished.output;

@@ -1,7 +1,5 @@
 // Does one thing with a device and prints what came of it on one line: for tests that need a process of their
 // own, with an environment of its own. Usage: gpu_probe open DEVICE | lacking DEVICE | validate | list
-#include "engine/core/log.hpp"
-
 #include <heliograph/device.hpp>
 #include <heliograph/error.hpp>
 
@@ -10,7 +8,6 @@
 
 int main(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
-    helio::log().set_level(spdlog::level::info);
     try {
         if (what == "list") {
             for (const helio::DeviceInfo& info : helio::listDevices()) {
