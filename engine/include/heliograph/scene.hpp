@@ -4,6 +4,9 @@
  * the scene says otherwise; counter-clockwise is front; cameras look along their node's -Z. Angles are
  * radians; colours are linear Rec.709; radiance is W/(sr m^2) per channel. See the project's contract.
  */
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -16,9 +19,6 @@
 #include <utility>
 #include <variant>
 #include <vector>
-
-#include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 namespace helio {
 
@@ -46,8 +46,8 @@ struct Texture {
 
 /** A material's use of a texture. */
 struct TextureUse {
-    int texture = -1;  ///< into Scene::textures; -1 for none
-    int texcoord = 0;  ///< which UV set
+    int texture = -1;           ///< into Scene::textures; -1 for none
+    int texcoord = 0;           ///< which UV set
     glm::mat3 transform{1.0f};  ///< applied to (u, v, 1)
     explicit operator bool() const { return texture >= 0; }
 };
@@ -66,13 +66,39 @@ struct Material {
     float normalScale = 1.0f;
     TextureUse occlusionTexture;
     float occlusionStrength = 1.0f;
-    glm::vec3 emission{0.0f};  ///< radiance: emissive factor times strength
+    glm::vec3 emission{0.0f};    ///< radiance: emissive factor times strength
     TextureUse emissiveTexture;  ///< sRGB
-    float specular = 1.0f;  ///< KHR_materials_specular factor; 0 with metallic 0 is exactly Lambertian
+    float specular = 1.0f;       ///< KHR_materials_specular factor; 0 with metallic 0 is exactly Lambertian
     TextureUse specularTexture;
     glm::vec3 specularColor{1.0f};
     TextureUse specularColorTexture;
     float ior = 1.5f;
+    float transmission = 0.0f;       ///< KHR_materials_transmission
+    TextureUse transmissionTexture;  ///< R, linear
+    float thickness = 0.0f;       ///< KHR_materials_volume: 0 is thin-walled; metres of the mesh's own space
+    TextureUse thicknessTexture;  ///< G, linear
+    float attenuationDistance = std::numeric_limits<float>::infinity();  ///< metres of the world
+    glm::vec3 attenuationColor{1.0f};  ///< what of white light is left after attenuationDistance
+    float clearcoat = 0.0f;            ///< KHR_materials_clearcoat
+    TextureUse clearcoatTexture;       ///< R, linear
+    float clearcoatRoughness = 0.0f;
+    TextureUse clearcoatRoughnessTexture;  ///< G, linear
+    TextureUse clearcoatNormalTexture;
+    float clearcoatNormalScale = 1.0f;
+    glm::vec3 sheenColor{0.0f};    ///< KHR_materials_sheen
+    TextureUse sheenColorTexture;  ///< sRGB
+    float sheenRoughness = 0.0f;
+    TextureUse sheenRoughnessTexture;  ///< A, linear
+    float anisotropyStrength = 0.0f;   ///< KHR_materials_anisotropy
+    float anisotropyRotation = 0.0f;   ///< radians, counter-clockwise from the tangent
+    TextureUse anisotropyTexture;      ///< RG direction in [-1, 1], B strength, linear
+    float iridescence = 0.0f;          ///< KHR_materials_iridescence
+    TextureUse iridescenceTexture;     ///< R, linear
+    float iridescenceIor = 1.3f;
+    float iridescenceThicknessMinimum = 100.0f;  ///< nanometres
+    float iridescenceThicknessMaximum = 400.0f;  ///< nanometres; taken where there is no texture
+    TextureUse iridescenceThicknessTexture;      ///< G, linear, from minimum to maximum
+    float dispersion = 0.0f;                     ///< KHR_materials_dispersion: 20 / Abbe number
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;  ///< emits from both faces
@@ -84,12 +110,12 @@ struct Material {
 /** Triangles with one material. Attributes are empty or one per position. */
 struct Primitive {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;    ///< unit, or empty: flat-shaded
-    std::vector<glm::vec4> tangents;   ///< w is the bitangent's sign
+    std::vector<glm::vec3> normals;                 ///< unit, or empty: flat-shaded
+    std::vector<glm::vec4> tangents;                ///< w is the bitangent's sign
     std::vector<std::vector<glm::vec2>> texcoords;  ///< per set
-    std::vector<glm::vec4> colors;     ///< linear, multiplies the base colour
-    std::vector<std::uint32_t> indices;  ///< 3 per triangle; always filled
-    int material = -1;                 ///< into Scene::materials; -1 for glTF's default material
+    std::vector<glm::vec4> colors;                  ///< linear, multiplies the base colour
+    std::vector<std::uint32_t> indices;             ///< 3 per triangle; always filled
+    int material = -1;                              ///< into Scene::materials; -1 for glTF's default material
 };
 
 struct Mesh {
@@ -117,7 +143,8 @@ struct PunctualLight {
     float outerConeAngle = 0.7853982f;
 };
 
-/** A node of the hierarchy. The local transform is `matrix` where given, else translation, rotation, scale. */
+/** A node of the hierarchy. The local transform is `matrix` where given, else translation, rotation, scale.
+ */
 struct Node {
     std::string name;
     std::vector<int> children;
@@ -170,9 +197,9 @@ struct Scene {
     std::vector<std::pair<std::string, std::string>> skipped;
     std::vector<std::string> warnings;
 
-    /** Refuses what nothing can be computed from: an index out of range, attributes of the wrong number, a number
-     * that is not finite or out of its range, a cyclic hierarchy. Throws InputError with the place. Scenes from
-     * load() pass; those built in code are checked when they are rendered. */
+    /** Refuses what nothing can be computed from: an index out of range, attributes of the wrong number, a
+     * number that is not finite or out of its range, a cyclic hierarchy. Throws InputError with the place.
+     * Scenes from load() pass; those built in code are checked when they are rendered. */
     void validate() const;
     /** World placements, computed in double, depth first from the roots, parents before children. Throw
      * InputError for a node reached twice (a cycle or two parents) or an index out of range. */
@@ -199,13 +226,13 @@ std::vector<std::string> sampleNames();
  * The camera to render with. `nameOrIndex` is the name of a placed camera or of its node, else an index into
  * Scene::placedCameras(); "" takes the first placed one. Throws InputError that lists the cameras.
  *
- * A scene without a placed camera is framed, for "": with c the centre of Scene::bounds() and r half its diagonal,
- * the camera stands at c - d f and looks along f = (0, -1/2, -1) / |(0, -1/2, -1)| with +X to the right; vertical
- * field of view 45 degrees, near plane d / 100. d = r / sin(h), where h is half the smaller of the vertical and the
- * horizontal field of view at `aspect` (width over height): the bounding sphere touches the image's nearer edges.
- * r is at least 2^-22 |c|, what single precision resolves there, and 1 for a scene that is a single point at the
- * origin or has no triangles (c is then the origin). The camera is appended to scene.cameras as "heliograph.frame"
- * (once; later calls overwrite it) and has node -1.
+ * A scene without a placed camera is framed, for "": with c the centre of Scene::bounds() and r half its
+ * diagonal, the camera stands at c - d f and looks along f = (0, -1/2, -1) / |(0, -1/2, -1)| with +X to the
+ * right; vertical field of view 45 degrees, near plane d / 100. d = r / sin(h), where h is half the smaller
+ * of the vertical and the horizontal field of view at `aspect` (width over height): the bounding sphere
+ * touches the image's nearer edges. r is at least 2^-22 |c|, what single precision resolves there, and 1 for
+ * a scene that is a single point at the origin or has no triangles (c is then the origin). The camera is
+ * appended to scene.cameras as "heliograph.frame" (once; later calls overwrite it) and has node -1.
  */
 PlacedCamera chooseCamera(Scene& scene, const std::string& nameOrIndex, double aspect = 1.0);
 
