@@ -60,17 +60,18 @@ std::uint64_t cacheHash(std::span<const std::byte> data) {
 }
 
 std::optional<std::vector<std::byte>> readCacheData(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
     if (!in) return std::nullopt;
+    // Of the open file: by its name another one may have taken its place.
+    const auto size = std::uint64_t(in.tellg());
+    in.seekg(0);
     const auto ignore = [&](const char* why) -> std::optional<std::vector<std::byte>> {
         log().info("cache file '{}' is passed over: {}", file.string(), why);
         return std::nullopt;
     };
-    std::error_code error;
-    const std::uint64_t size = std::filesystem::file_size(file, error);
     FileHeader header;
     const FileHeader expected;
-    if (error || !in.read(reinterpret_cast<char*>(&header), sizeof header)) return ignore("it is too short");
+    if (!in.read(reinterpret_cast<char*>(&header), sizeof header)) return ignore("it is too short");
     if (header.magic != expected.magic) return ignore("it is not one of the engine's");
     // Compared before anything is allocated: a damaged length must not ask for terabytes.
     if (header.bytes != size - sizeof header) return ignore("its length is wrong");

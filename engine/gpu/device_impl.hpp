@@ -7,8 +7,8 @@
  * features) gpu.queue                               queue.hpp: recording and submission Recording r =
  * gpu.queue.begin("name");  r->dispatch(...);  std::uint64_t value = gpu.queue.submit(std::move(r));
  *       gpu.queue.wait(value), done(value), submitted();  gpu.queue.retire(object): destroyed when all so far
- * is done. Submissions run strictly in order, each sees all writes of the one before (semaphore), and once
- * its value is reached mapped memory shows its writes: barriers are needed only inside one Recording.
+ * is done. Submissions run strictly in order, and each sees all writes of the one before (semaphore):
+ * barriers are needed only inside one Recording, and for the host (engine/graph/host_access.hpp).
  *   gpu.memory                              memory.hpp: allocate(MemoryRequest) -> Allocation (RAII),
  * statistics() resource.hpp bufferRequirements(gpu, bytes, usage), imageRequirements(gpu, width, height,
  * format)   without creating any BufferResource b = createBuffer(gpu, "name", bytes[, use, usage]);      own

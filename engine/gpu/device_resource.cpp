@@ -66,37 +66,7 @@ std::uint64_t DeviceBuffer::bytes() const {
 void DeviceBuffer::upload(const void* data, std::uint64_t bytes, std::uint64_t offset) {
     impl_->device->staging.upload(impl_->resource, data, bytes, offset);
 }
-void DeviceBuffer::download(void* data, std::uint64_t bytes, std::uint64_t offset) const {
-    impl_->device->staging.download(impl_->resource, data, bytes, offset);
-}
 
-DeviceImage::DeviceImage(Device& device, std::string name, std::uint32_t width, std::uint32_t height,
-                         Format format) {
-    Device::Impl& impl = device.impl();
-    gpu::ImageResource resource =
-        gpu::createImage(impl, std::move(name), {width, height}, gpu::vulkanFormat(format));
-    gpu::translateErrors("clearing image '" + resource.name + "'", [&] {
-        const vk::ImageSubresourceRange whole{
-            .aspectMask = vk::ImageAspectFlagBits::eColor, .levelCount = 1, .layerCount = 1};
-        // The memory may have been another resource's a submission ago: the source scope takes up the wait
-        // for it.
-        const vk::ImageMemoryBarrier2 toGeneral{.srcStageMask = vk::PipelineStageFlagBits2::eAllCommands,
-                                                .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
-                                                .dstStageMask = vk::PipelineStageFlagBits2::eAllTransfer,
-                                                .dstAccessMask = vk::AccessFlagBits2::eTransferWrite,
-                                                .oldLayout = vk::ImageLayout::eUndefined,
-                                                .newLayout = vk::ImageLayout::eGeneral,
-                                                .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                                .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                                .image = *resource.image,
-                                                .subresourceRange = whole};
-        gpu::Recording commands = impl.queue.begin("clear image");
-        commands->pipelineBarrier2({.imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &toGeneral});
-        commands->clearColorImage(*resource.image, vk::ImageLayout::eGeneral, vk::ClearColorValue{}, whole);
-        impl.queue.submit(std::move(commands));
-    });
-    impl_.reset(new Impl{&impl, std::move(resource), format});
-}
 DeviceImage::~DeviceImage() = default;
 DeviceImage::DeviceImage(DeviceImage&&) noexcept = default;
 DeviceImage& DeviceImage::operator=(DeviceImage&&) noexcept = default;

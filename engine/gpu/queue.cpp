@@ -65,14 +65,9 @@ Recording Queue::begin(std::string_view name) {
     });
 }
 
-std::uint64_t Queue::submit(Recording recording) {
+std::uint64_t Queue::submit(Recording recording, bool forHost) {
     const vk::raii::CommandBuffer& commands = *recording;
-    const vk::MemoryBarrier2 toHost{.srcStageMask = vk::PipelineStageFlagBits2::eAllCommands,
-                                    .srcAccessMask = vk::AccessFlagBits2::eMemoryWrite,
-                                    .dstStageMask = vk::PipelineStageFlagBits2::eHost,
-                                    .dstAccessMask = vk::AccessFlagBits2::eHostRead};
     const std::uint64_t value = translateErrors("submitting to the device", [&] {
-        commands.pipelineBarrier2({.memoryBarrierCount = 1, .pMemoryBarriers = &toHost});
         commands.end();
         const std::lock_guard lock(mutex_);
         const std::uint64_t previous = submitted_;
@@ -90,6 +85,7 @@ std::uint64_t Queue::submit(Recording recording) {
                                        .signalSemaphoreInfoCount = 1,
                                        .pSignalSemaphoreInfos = &signal});
         submitted_ = previous + 1;
+        if (forHost) forHost_ = previous + 1;
         running_.emplace_back(previous + 1, std::move(recording.slot_));
         return previous + 1;
     });

@@ -32,10 +32,10 @@ private:
 };
 
 /** One queue. Every submission waits for the one before and signals the next value of a timeline semaphore,
- * so all writes of one submission are visible to the next without a barrier. Every submission ends with a
- * dependency to the host: once its value is reached, mapped memory shows what it wrote. What the host wrote
- * to mapped coherent memory before submit() is visible to the device (Vulkan 1.3, 7.9). Thread-safe; each
- * Recording has a command pool of its own, so threads may record at once. */
+ * so all writes of one submission are visible to the next without a barrier. What the host wrote to mapped
+ * coherent memory before submit() is visible to the device (Vulkan 1.3, 7.9); the other way needs a
+ * dependency to the host, which engine/graph records. Thread-safe; each Recording has a command pool of its
+ * own, so threads may record at once. */
 class Queue {
 public:
     Queue(const vk::raii::Device& device, std::uint32_t family);
@@ -43,11 +43,15 @@ public:
 
     /** A command buffer in the recording state; `name` is for messages and captures. */
     Recording begin(std::string_view name = {});
-    /** Ends and submits; returns the timeline value that it signals. */
-    std::uint64_t submit(Recording recording);
+    /** Ends and submits; returns the timeline value that it signals. `forHost`: the recording ends with a
+     * dependency of everything before to the host, so once its value is reached mapped memory shows all of
+     * it. */
+    std::uint64_t submit(Recording recording, bool forHost = false);
 
     std::uint64_t submitted() const { return submitted_; }  ///< value of the last submission, 0 for none
     bool done(std::uint64_t value) const;                   ///< does not block
+    /** Everything submitted is done, and the host may read and write what it used in mapped memory. */
+    bool hostMayAccess() const { return submitted_ == forHost_ && done(forHost_); }
     /** Blocks until the value is reached, then destroys what was retired before. */
     void wait(std::uint64_t value);
     void waitIdle() { wait(submitted_); }
@@ -73,6 +77,7 @@ private:
     vk::raii::Queue queue_;
     vk::raii::Semaphore timeline_;
     std::atomic<std::uint64_t> submitted_{0};
+    std::atomic<std::uint64_t> forHost_{0};  ///< last submission that ended with a dependency to the host
     mutable std::atomic<std::uint64_t> reached_{0};
 
     std::mutex mutex_;

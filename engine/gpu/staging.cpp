@@ -20,7 +20,7 @@ void Staging::upload(const BufferResource& buffer, const void* data, std::uint64
     assert(offset <= buffer.bytes && bytes <= buffer.bytes - offset);
     if (bytes == 0) return;
     const std::lock_guard lock(mutex_);
-    if (direct_ && buffer.mapped && gpu_.queue.done(gpu_.queue.submitted())) {
+    if (direct_ && buffer.mapped && gpu_.queue.hostMayAccess()) {
         std::memcpy(buffer.mapped + offset, data, bytes);
         return;
     }
@@ -59,12 +59,13 @@ std::uint64_t Staging::reserve(std::uint64_t bytes) {
     return skipped > 0 ? 0 : at;
 }
 
-void Staging::download(const BufferResource& buffer, void* data, std::uint64_t bytes, std::uint64_t offset) {
+void Staging::download(const BufferResource& buffer, void* data, std::uint64_t bytes, std::uint64_t offset,
+                       const WaitForHost& waitForHost) {
     assert(offset <= buffer.bytes && bytes <= buffer.bytes - offset);
     if (bytes == 0) return;
     const std::lock_guard lock(mutex_);
     if (direct_ && buffer.mapped) {
-        gpu_.queue.waitIdle();
+        waitForHost(std::nullopt);
         std::memcpy(data, buffer.mapped + offset, bytes);
         return;
     }
@@ -78,7 +79,7 @@ void Staging::download(const BufferResource& buffer, void* data, std::uint64_t b
         Recording commands = gpu_.queue.begin("download");
         commands->copyBuffer(*buffer.buffer, *readback_->buffer,
                              vk::BufferCopy{.srcOffset = offset + done, .dstOffset = 0, .size = part});
-        gpu_.queue.wait(gpu_.queue.submit(std::move(commands)));
+        waitForHost(std::move(commands));
         std::memcpy(target + done, readback_->mapped, part);
         done += part;
     }

@@ -1,9 +1,11 @@
 #pragma once
 /** @file Copies between the host and device buffers. */
+#include "engine/gpu/queue.hpp"
 #include "engine/gpu/resource.hpp"
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -22,8 +24,12 @@ public:
     /** Returns when `data` may be reused. Work submitted before sees the old bytes, work submitted later the
      * new. */
     void upload(const BufferResource& buffer, const void* data, std::uint64_t bytes, std::uint64_t offset);
+    /** Submits the recording if there is one, waits for everything submitted, and makes it visible to the
+     * host. */
+    using WaitForHost = std::function<void(std::optional<Recording>)>;
     /** Waits for everything submitted and copies out. */
-    void download(const BufferResource& buffer, void* data, std::uint64_t bytes, std::uint64_t offset);
+    void download(const BufferResource& buffer, void* data, std::uint64_t bytes, std::uint64_t offset,
+                  const WaitForHost& waitForHost);
 
     /** Switches direct access to mapped device memory off (false), so that the ring is used. */
     void allowDirect(bool allow) { direct_ = allow; }

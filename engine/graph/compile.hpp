@@ -25,6 +25,10 @@ void place(const Input& input, Compiled& compiled);
 /** Derives every barrier from steps and placements. */
 void synchronize(const Input& input, Compiled& compiled);
 
+/** Hands everything that the device has done to the host: what ends a submission whose results the host
+ * reads, or whose memory it writes next. */
+Barrier hostDependency();
+
 /** All of the above. Throws GraphError with every problem. */
 Compiled compile(const Input& input);
 

@@ -129,12 +129,17 @@ std::string stageNames(Stages stages) {
 }
 
 std::string accessNames(Accesses accesses) {
-    static const std::pair<std::uint32_t, const char*> names[] = {
-        {access::StorageRead, "storage-read"},     {access::StorageWrite, "storage-write"},
-        {access::SampledRead, "sampled-read"},     {access::UniformRead, "uniform-read"},
-        {access::IndirectRead, "indirect-read"},   {access::TransferRead, "transfer-read"},
-        {access::TransferWrite, "transfer-write"}, {access::HostRead, "host-read"},
-        {access::AllWrites, "all-writes"},         {access::AllReads, "all-reads"}};
+    static const std::pair<std::uint32_t, const char*> names[] = {{access::StorageRead, "storage-read"},
+                                                                  {access::StorageWrite, "storage-write"},
+                                                                  {access::SampledRead, "sampled-read"},
+                                                                  {access::UniformRead, "uniform-read"},
+                                                                  {access::IndirectRead, "indirect-read"},
+                                                                  {access::TransferRead, "transfer-read"},
+                                                                  {access::TransferWrite, "transfer-write"},
+                                                                  {access::HostRead, "host-read"},
+                                                                  {access::HostWrite, "host-write"},
+                                                                  {access::AllWrites, "all-writes"},
+                                                                  {access::AllReads, "all-reads"}};
     return joinNames(accesses, names);
 }
 
@@ -170,7 +175,7 @@ const char* causeName(Cause cause) {
             return "aliasing";
         case Cause::Execution:
             return "between executions";
-        case Cause::HostRead:
+        case Cause::HostAccess:
             return "host read";
     }
     return "";

@@ -75,7 +75,7 @@ Execution Plan::Impl::execute() {
     makeSlot(slot);
     gpu::Recording recording = device->queue.begin(fmt::format("plan {}", serial));
     record(*recording, slot);
-    const std::uint64_t value = device->queue.submit(std::move(recording));
+    const std::uint64_t value = device->queue.submit(std::move(recording), true);
     slot.execution = {.value = value, .serial = ++executions, .plan = serial};
     return slot.execution;
 }

@@ -169,6 +169,7 @@ private:
     }
 
     void finish() {
+        compiled_.exit.push_back(hostDependency());
         for (std::uint32_t i = 0; i < states_.size(); ++i) {
             const ResourceInput& resource = input_.resources[i];
             State& state = states_[i];
@@ -183,12 +184,6 @@ private:
                                       .newLayout = Layout::General,
                                       .cause = Cause::LayoutChange});
         }
-        if (!input_.readbacks.empty())
-            compiled_.exit.insert(compiled_.exit.begin(), {.fromStages = stage::Copy,
-                                                           .fromAccess = access::TransferWrite,
-                                                           .toStages = stage::Host,
-                                                           .toAccess = access::HostRead,
-                                                           .cause = Cause::HostRead});
     }
 
     const Input& input_;
@@ -198,6 +193,14 @@ private:
 };
 
 }  // namespace
+
+Barrier hostDependency() {
+    return {.fromStages = stage::All,
+            .fromAccess = access::AllWrites,
+            .toStages = stage::Host,
+            .toAccess = access::HostRead | access::HostWrite,
+            .cause = Cause::HostAccess};
+}
 
 void synchronize(const Input& input, Compiled& compiled) {
     Synchronizer(input, compiled).run();

@@ -30,6 +30,7 @@ vk::AccessFlags2 vulkanAccesses(Accesses accesses) {
                                                        {access::TransferRead, A::eTransferRead},
                                                        {access::TransferWrite, A::eTransferWrite},
                                                        {access::HostRead, A::eHostRead},
+                                                       {access::HostWrite, A::eHostWrite},
                                                        {access::AllWrites, A::eMemoryWrite},
                                                        {access::AllReads, A::eMemoryRead}};
     vk::AccessFlags2 flags;

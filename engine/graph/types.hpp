@@ -36,6 +36,7 @@ inline constexpr Accesses IndirectRead = 16;
 inline constexpr Accesses TransferRead = 32;
 inline constexpr Accesses TransferWrite = 64;
 inline constexpr Accesses HostRead = 128;
+inline constexpr Accesses HostWrite = 256;
 inline constexpr Accesses AllWrites = 0x40000000u;
 inline constexpr Accesses AllReads = 0x80000000u;
 inline constexpr Accesses Writes = StorageWrite | TransferWrite | AllWrites;
@@ -147,7 +148,7 @@ enum class Cause : std::uint8_t {
     FirstUse,   ///< an image leaves the undefined layout
     Aliasing,   ///< the memory held other resources before
     Execution,  ///< between executions
-    HostRead,
+    HostAccess,
 };
 
 /** A dependency. A memory barrier (resource == none) covers all memory. Steps issue their memory barriers in
@@ -200,7 +201,7 @@ struct CulledPass {
 struct Compiled {
     std::vector<Step> steps;
     std::vector<Barrier> entry;  ///< before the first step of every execution
-    std::vector<Barrier> exit;   ///< after the last step
+    std::vector<Barrier> exit;   ///< after the last step: to the host first
     std::vector<Arena> arenas;
     std::vector<Placement> placements;
     std::vector<CulledPass> culledPasses;

@@ -1,5 +1,6 @@
 // Resources placed in memory that they share: what the graph's aliasing rests on.
 #include "engine/gpu/device_impl.hpp"
+#include "engine/graph/host_access.hpp"
 #include "tests/support/device.hpp"
 
 #include <gtest/gtest.h>
@@ -42,10 +43,10 @@ TEST(Placement, BuffersAndImagesShareOneRange) {
     commands->fillBuffer(*b.buffer, 0, 50000, 0x22222222);
     gpu.queue.submit(std::move(commands));
     std::vector<std::uint32_t> out(12500);
-    gpu.staging.download(alias, out.data(), 50000, 0);
+    graph::download(gpu, alias, out.data(), 50000, 0);
     EXPECT_EQ(std::size_t(std::ranges::count(out, 0x11111111u)), out.size())
         << "the alias sees the same bytes";
-    gpu.staging.download(b, out.data(), 50000, 0);
+    graph::download(gpu, b, out.data(), 50000, 0);
     EXPECT_EQ(std::size_t(std::ranges::count(out, 0x22222222u)), out.size());
     EXPECT_TRUE(*image.view);
 

@@ -137,8 +137,10 @@ TEST(Barriers, HostReadsWhatWasCopiedBack) {
     const Chain g(1);
     const Compiled plan = g.compile();
     ASSERT_EQ(plan.exit.size(), 1u);
-    EXPECT_EQ(plan.exit[0].fromStages, stage::Copy);
+    EXPECT_EQ(plan.exit[0].fromStages, stage::All);
+    EXPECT_EQ(plan.exit[0].fromAccess, access::AllWrites);
     EXPECT_EQ(plan.exit[0].toStages, stage::Host);
+    EXPECT_EQ(plan.exit[0].toAccess, access::HostRead | access::HostWrite);
 }
 
 TEST(Layouts, ImageStartsUndefinedAndMovesForReadback) {
