@@ -1,5 +1,7 @@
 #include "commands.hpp"
 #include "console.hpp"
+#include "interrupts.hpp"
+#include "progress_display.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/features.hpp>
@@ -10,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 
 namespace helio::cli {
 namespace {
@@ -112,7 +115,14 @@ void printScene(const Json& scene) {
 
 int info(const std::string& source, bool json) {
     if (!source.empty()) {
-        const Json scene = describeScene(load(source));
+        handleInterrupts();
+        ProgressDisplay display(false);
+        const std::optional<Scene> loaded = loadShowingProgress(source, display);
+        if (!loaded) {
+            say("interrupted while loading");
+            return Interrupted;
+        }
+        const Json scene = describeScene(*loaded);
         if (json) {
             printJson(scene);
         } else {

@@ -1,6 +1,9 @@
 #include "progress_display.hpp"
 
 #include "console.hpp"
+#include "interrupts.hpp"
+
+#include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -32,17 +35,50 @@ void ProgressDisplay::update(const Progress& progress) {
     }
     if (progress.stage != "render") return;
     if (terminal_) {
-        writeError("\r\x1b[K" + describe(progress));
-        lineOpen_ = true;
+        show(describe(progress));
     } else if (progress.seconds >= nextLineAt_) {
         say("{}", describe(progress));
         nextLineAt_ = progress.seconds * 2;
     }
 }
 
+void ProgressDisplay::update(const LoadProgress& progress) {
+    if (quiet_) return;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+    const std::string text = fmt::format("loading {} {:3.0f} %", progress.stage, progress.fraction * 100);
+    if (terminal_) {
+        if (elapsed.count() > 0.5) show(text);  // most scenes are there before anyone could read it
+    } else if (elapsed.count() >= nextLoadLineAt_) {
+        say("{}", text);
+        nextLoadLineAt_ = elapsed.count() * 2;
+    }
+}
+
+void ProgressDisplay::show(const std::string& line) {
+    writeError("\r\x1b[K" + line);
+    lineOpen_ = true;
+}
+
 void ProgressDisplay::finish() {
     if (lineOpen_) writeError("\r\x1b[K");
     lineOpen_ = false;
+}
+
+std::optional<Scene> loadShowingProgress(const std::string& source, ProgressDisplay& display) try {
+    LoadOptions options;
+    options.progress = [&](const LoadProgress& progress) {
+        display.update(progress);
+        return !interrupted();
+    };
+    Scene scene = load(source, options);
+    display.finish();
+    return scene;
+} catch (const Cancelled&) {
+    display.finish();
+    return std::nullopt;
+} catch (...) {
+    display.finish();  // an error's line must not follow what is shown
+    throw;
 }
 
 }  // namespace helio::cli

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "console.hpp"
+#include "interrupts.hpp"
 #include "output_files.hpp"
 #include "progress_display.hpp"
 
@@ -12,14 +13,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <csignal>
 #include <exception>
 #include <memory>
+#include <optional>
 
 namespace helio::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct RenderArguments {
     std::string scene;
@@ -159,11 +158,6 @@ private:
     std::exception_ptr failure_;
 };
 
-void handleInterrupts() {
-    std::signal(SIGINT, [](int) { interrupted = 1; });
-    std::signal(SIGTERM, [](int) { interrupted = 1; });
-}
-
 int reportNothingWritten() {
     say("interrupted before the first sample: nothing was written");
     return Interrupted;
@@ -193,11 +187,12 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     ProgressDisplay display(arguments.quiet);
     options.progress = [&](const Progress& progress) {
         display.update(progress);
-        return interrupted == 0;
+        return !interrupted();
     };
 
-    const Scene scene = load(arguments.scene);
-    if (interrupted != 0) return reportNothingWritten();
+    const std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display);
+    if (!loaded || interrupted()) return reportNothingWritten();
+    const Scene& scene = *loaded;
     DeviceOptions device;
     device.device = arguments.device;
     device.validation = arguments.validate;
@@ -220,7 +215,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     if (!arguments.quiet) printSummary(arguments, scene, result);
     writer.throwFailure();
     if (arguments.validate) reportValidation(renderer);
-    return result.cancelled && interrupted != 0 ? Interrupted : Done;
+    return result.cancelled && interrupted() ? Interrupted : Done;
 }
 
 template <typename Enum>

@@ -26,6 +26,12 @@ public:
     std::string remedy;  ///< what would be right
 };
 
+/** The application asked to stop, and nothing came of the call. */
+class Cancelled : public Error {
+public:
+    using Error::Error;
+};
+
 /** The device or its driver failed or cannot do what was asked. */
 class DeviceError : public Error {
 public:

@@ -217,8 +217,20 @@ struct Scene {
     std::uint64_t triangleCount() const;
 };
 
-/** Loads a file by its extension (.gltf, .glb) or "sample:NAME". Throws InputError. */
-Scene load(const std::string& source);
+/** State of a running load. */
+struct LoadProgress {
+    std::string stage;    ///< what is being done, e.g. "geometry" or "images"
+    double fraction = 0;  ///< 0..1 of that
+};
+
+struct LoadOptions {
+    /** Called now and then, one call at a time, from any thread. Returning false stops the load. */
+    std::function<bool(const LoadProgress&)> progress;
+};
+
+/** Loads a file by its extension (.gltf, .glb) or "sample:NAME". Throws InputError, or Cancelled where
+ * LoadOptions::progress asked for it. */
+Scene load(const std::string& source, const LoadOptions& options = {});
 /** Names of the built-in samples. */
 std::vector<std::string> sampleNames();
 

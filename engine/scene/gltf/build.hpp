@@ -1,6 +1,7 @@
 #pragma once
 /** @file The parts of a glTF asset turned into parts of a Scene. */
 #include "engine/scene/gltf/accessors.hpp"
+#include "engine/scene/load_monitor.hpp"
 
 #include <heliograph/scene.hpp>
 
@@ -18,11 +19,11 @@ void skip(helio::Scene& scene, const std::string& what, const std::string& why);
 void warn(helio::Scene& scene, const std::string& message);
 
 /** Fills Scene::meshes. */
-void buildMeshes(const Asset& asset, helio::Scene& scene);
+void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene);
 
 /** Fills Scene::materials, textures and images: the materials in `used` with their textures, the others
  * without. */
-void buildMaterials(const Asset& asset, const std::set<int>& used, helio::Scene& scene);
+void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& monitor, helio::Scene& scene);
 
 /** Fills Scene::nodes, roots, cameras and lights. Refuses cycles and nodes with two parents. */
 void buildNodes(const Asset& asset, helio::Scene& scene);
@@ -34,7 +35,7 @@ public:
     /** The scene's image for an index into the asset's images. Reads it; decoding waits for decodeAll. */
     int use(int image);
     /** Decodes what was used, side by side, into Scene::images. */
-    void decodeAll(helio::Scene& scene);
+    void decodeAll(LoadMonitor& monitor, helio::Scene& scene);
 
 private:
     struct Source {

@@ -71,16 +71,17 @@ std::set<int> usedMaterials(const helio::Scene& scene) {
 }  // namespace
 }  // namespace gltf
 
-Scene loadGltf(const std::string& file) try {
+Scene loadGltf(const std::string& file, LoadMonitor& monitor) try {
     Scene scene;
     scene.name = file;
     gltf::Container container = gltf::readContainer(file);
     gltf::checkSchema(file, container.document);
     gltf::checkExtensions(container, scene);
+    monitor.report("buffers", 0);
     const gltf::Asset asset(std::move(container));
-    gltf::buildMeshes(asset, scene);
+    gltf::buildMeshes(asset, monitor, scene);
     gltf::buildNodes(asset, scene);
-    gltf::buildMaterials(asset, gltf::usedMaterials(scene), scene);
+    gltf::buildMaterials(asset, gltf::usedMaterials(scene), monitor, scene);
     return scene;
 } catch (const std::bad_alloc&) {
     throw InputError(file, "", "does not fit in memory", "give a smaller file");

@@ -4,6 +4,8 @@
  * container (file, chunks, JSON text), schema (types, ranges, every index), tinygltf (typed model), buffers
  * and accessors (sizes, offsets), then meshes, materials, images, nodes.
  */
+#include "engine/scene/load_monitor.hpp"
+
 #include <heliograph/scene.hpp>
 
 #include <string>
@@ -19,6 +21,6 @@ namespace helio {
  * Material::unsupported; refused if it is required. Images are decoded once each, and only those that a
  * material of the shown scene uses; other materials come without their textures.
  */
-Scene loadGltf(const std::string& file);
+Scene loadGltf(const std::string& file, LoadMonitor& monitor);
 
 }  // namespace helio

@@ -41,21 +41,30 @@ int ImageLoader::use(int image) {
     return known;
 }
 
-void ImageLoader::decodeAll(helio::Scene& scene) {
+void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
     std::vector<DecodedImage> decoded(sources_.size());
     std::vector<std::string> faults(sources_.size());
     if (!sources_.empty()) imageBackend();  // its own failure is not an image's
     std::atomic<std::size_t> next{0};
+    std::atomic<bool> isStopped{false};
     const auto work = [&] {
-        for (std::size_t i = next++; i < sources_.size(); i = next++) {
+        for (std::size_t i = next++; i < sources_.size() && !isStopped; i = next++) {
             faults[i] = decodeImage(sources_[i].bytes, decoded[i]);
         }
     };
     std::vector<std::jthread> helpers;
     const std::size_t threads =
         std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), sources_.size());
-    for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-    work();
+    try {
+        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+        for (std::size_t i = next++; i < sources_.size(); i = next++) {
+            monitor.report("images", double(i) / double(sources_.size()));
+            faults[i] = decodeImage(sources_[i].bytes, decoded[i]);
+        }
+    } catch (...) {
+        isStopped = true;
+        throw;
+    }
     helpers.clear();
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         if (!faults[i].empty()) {

@@ -85,7 +85,7 @@ public:
         return std::move(material_);
     }
 
-    void finish() { images_.decodeAll(scene_); }
+    void finish(LoadMonitor& monitor) { images_.decodeAll(monitor, scene_); }
 
 private:
     /** Factors that must lie in 0..1 are brought there; files with others are about, and energy must not
@@ -195,14 +195,15 @@ private:
 
 }  // namespace
 
-void buildMaterials(const Asset& asset, const std::set<int>& used, helio::Scene& scene) {
+void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& monitor,
+                    helio::Scene& scene) {
     MaterialBuilder builder(asset, scene);
     int index = 0;
     for (const tinygltf::Material& material : asset.model().materials) {
         scene.materials.push_back(builder.build(material, index, used.contains(index)));
         ++index;
     }
-    builder.finish();
+    builder.finish(monitor);
 }
 
 }  // namespace helio::gltf

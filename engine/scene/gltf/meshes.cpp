@@ -230,7 +230,7 @@ private:
 
 }  // namespace
 
-void buildMeshes(const Asset& asset, helio::Scene& scene) {
+void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene) {
     MemoryBudget memory(asset);
     for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
         const tinygltf::Mesh& from = asset.model().meshes[m];
@@ -238,6 +238,8 @@ void buildMeshes(const Asset& asset, helio::Scene& scene) {
         mesh.name = from.name;
         for (std::size_t p = 0; p < from.primitives.size(); ++p) {
             const tinygltf::Primitive& primitive = from.primitives[p];
+            monitor.report("geometry", (double(m) + double(p) / double(from.primitives.size())) /
+                                           double(asset.model().meshes.size()));
             const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
             if (!primitive.targets.empty()) skip(scene, "morph targets", "the unmorphed mesh is shown");
             if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
