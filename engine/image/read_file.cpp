@@ -2,27 +2,58 @@
 
 #include <heliograph/error.hpp>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cassert>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 namespace helio {
 
-std::vector<std::byte> readFile(const std::filesystem::path& file) {
+FileSource::FileSource(const std::filesystem::path& file) : file_(file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) {
         const bool exists = std::filesystem::exists(file, error);
         throw InputError(file.string(), "", exists ? "is no regular file" : "does not exist", "give a file");
     }
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    const std::streamoff size = in ? std::streamoff(in.tellg()) : -1;
-    if (size < 0)
-        throw InputError(file.string(), "", "cannot be opened: " + std::string(std::strerror(errno)), "");
-    std::vector<std::byte> content(static_cast<std::size_t>(size));
-    in.seekg(0);
-    if (!in.read(reinterpret_cast<char*>(content.data()), size)) {
-        throw InputError(file.string(), "", "cannot be read whole", "");
+    descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    struct stat status {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
+        const std::string reason = std::strerror(errno);
+        if (descriptor_ >= 0) ::close(descriptor_);
+        throw InputError(file.string(), "", "cannot be opened: " + reason, "give a file that can be read");
     }
+    size_ = std::uint64_t(status.st_size);
+}
+
+FileSource::~FileSource() {
+    ::close(descriptor_);
+}
+
+void FileSource::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), off_t(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            throw InputError(file_.string(), "", "cannot be read whole",
+                             "give a file that stays as it is while it is read");
+        }
+        offset += std::uint64_t(count);
+        bytes = bytes.subspan(std::size_t(count));
+    }
+}
+
+void MemorySource::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+    assert(offset <= content_.size() && bytes.size() <= content_.size() - offset);
+    if (!bytes.empty()) std::memcpy(bytes.data(), content_.data() + offset, bytes.size());
+}
+
+std::vector<std::byte> readFile(const std::filesystem::path& file) {
+    const FileSource source(file);
+    std::vector<std::byte> content(source.size());
+    source.read(0, content);
     return content;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 /** @file The parts of a glTF asset turned into parts of a Scene. */
 #include "engine/scene/gltf/accessors.hpp"
+#include "engine/scene/image_decoding.hpp"
 #include "engine/scene/load_monitor.hpp"
+#include "engine/scene/notes.hpp"
 
 #include <heliograph/scene.hpp>
 
@@ -13,10 +15,6 @@ namespace helio::gltf {
 
 /** Extensions whose meaning the scene model holds, in alphabetical order. */
 bool isSupported(const std::string& extension);
-
-/** Notes in Scene::skipped or Scene::warnings, each once. */
-void skip(helio::Scene& scene, const std::string& what, const std::string& why);
-void warn(helio::Scene& scene, const std::string& message);
 
 /** Fills Scene::meshes. */
 void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene);
@@ -38,15 +36,9 @@ public:
     void decodeAll(LoadMonitor& monitor, helio::Scene& scene);
 
 private:
-    struct Source {
-        int image;  ///< into the asset's images, for messages
-        std::string name;
-        std::vector<std::byte> owned;
-        std::span<const std::byte> bytes;
-    };
     const Asset& asset_;
     std::vector<int> known_;  ///< per image of the asset: into sources_, -1 for not used yet
-    std::vector<Source> sources_;
+    std::vector<EncodedImage> sources_;
 };
 
 }  // namespace helio::gltf

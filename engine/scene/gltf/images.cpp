@@ -1,4 +1,3 @@
-#include "engine/image/backend.hpp"
 #include "engine/scene/gltf/build.hpp"
 #include "engine/scene/gltf/uri.hpp"
 
@@ -7,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <thread>
 
 namespace helio::gltf {
 
@@ -20,8 +17,8 @@ int ImageLoader::use(int image) {
 
     const nlohmann::json& json = images[std::size_t(image)];
     const std::string place = fmt::format("images[{}]", image);
-    Source source;
-    source.image = image;
+    EncodedImage source;
+    source.place = place;
     source.name = json.value("name", "");
     if (json.contains("uri")) {
         const auto& uri = json["uri"].get_ref<const std::string&>();
@@ -33,7 +30,7 @@ int ImageLoader::use(int image) {
     } else {
         throw InputError(asset_.file(), place, "has neither a uri nor a bufferView", "give it one of them");
     }
-    const auto same = std::find_if(sources_.begin(), sources_.end(), [&](const Source& other) {
+    const auto same = std::find_if(sources_.begin(), sources_.end(), [&](const EncodedImage& other) {
         return std::ranges::equal(other.bytes, source.bytes);
     });
     known = int(same - sources_.begin());
@@ -42,37 +39,10 @@ int ImageLoader::use(int image) {
 }
 
 void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
-    std::vector<DecodedImage> decoded(sources_.size());
-    std::vector<std::string> faults(sources_.size());
-    if (!sources_.empty()) imageBackend();  // its own failure is not an image's
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> isStopped{false};
-    const auto work = [&] {
-        for (std::size_t i = next++; i < sources_.size() && !isStopped; i = next++) {
-            faults[i] = decodeImage(sources_[i].bytes, decoded[i]);
-        }
-    };
-    std::vector<std::jthread> helpers;
-    const std::size_t threads =
-        std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), sources_.size());
-    try {
-        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-        for (std::size_t i = next++; i < sources_.size(); i = next++) {
-            monitor.report("images", double(i) / double(sources_.size()));
-            faults[i] = decodeImage(sources_[i].bytes, decoded[i]);
-        }
-    } catch (...) {
-        isStopped = true;
-        throw;
-    }
-    helpers.clear();
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-        if (!faults[i].empty()) {
-            throw InputError(asset_.file(), fmt::format("images[{}]", sources_[i].image), faults[i],
-                             "give a whole PNG or JPEG image");
-        }
-        scene.images.push_back(
-            {sources_[i].name, decoded[i].width, decoded[i].height, std::move(decoded[i].texels)});
+    for (DecodingResult& image : decodeImages(sources_, monitor)) {
+        if (!image.fault.empty())
+            throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG or JPEG image");
+        scene.images.push_back(std::move(image.image));
     }
 }
 
