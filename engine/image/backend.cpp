@@ -64,6 +64,12 @@ bool startsWith(std::span<const std::byte> file, std::span<const unsigned char> 
     return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
 }
 
+/** RIFF, a length, WEBP. */
+bool isWebp(std::span<const std::byte> file) {
+    return file.size() >= 12 && std::memcmp(file.data(), "RIFF", 4) == 0 &&
+           std::memcmp(file.data() + 8, "WEBP", 4) == 0;
+}
+
 }  // namespace
 
 const ImageBackend& imageBackend() {
@@ -89,7 +95,8 @@ std::string decodeImage(std::span<const std::byte> file, DecodedImage& image) {
     if (std::string fault = pngFault(file); !fault.empty()) return fault;
     if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", image);
     if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", image);
-    return "is neither PNG nor JPEG";
+    if (isWebp(file)) return imageBackend().decode(file, "webp", image);
+    return "is neither PNG nor JPEG nor WebP";
 }
 
 }  // namespace helio

@@ -49,7 +49,7 @@ const ImageBackend& imageBackend();
  * other files. Asked first, since libpng reports such faults on standard error by itself. */
 std::string pngFault(std::span<const std::byte> file);
 
-/** Decodes an image file held in memory, PNG or JPEG by its first bytes. Returns the fault, empty for
+/** Decodes an image file held in memory, PNG, JPEG or WebP by its first bytes. Returns the fault, empty for
  * success. */
 std::string decodeImage(std::span<const std::byte> file, DecodedImage& image);
 

@@ -94,8 +94,7 @@ bool boxIsInside(const Scene::Bounds& box, const glm::dmat4& transform, const Sc
 
 }  // namespace
 
-glm::dmat4 Node::localTransform() const {
-    if (matrix) return glm::dmat4(*matrix);
+glm::dmat4 Placement::matrix() const {
     // A float quaternion is off unit length by 1e-7; normalised in double the rotation is rigid to 1e-16.
     const glm::dquat q(rotation);
     const double length = glm::length(q);
@@ -103,11 +102,21 @@ glm::dmat4 Node::localTransform() const {
     return glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(translation)) * rotate, glm::dvec3(scale));
 }
 
+glm::dmat4 Node::localTransform() const {
+    return matrix ? glm::dmat4(*matrix) : Placement{translation, rotation, scale}.matrix();
+}
+
 std::vector<Instance> Scene::instances() const {
     std::vector<Instance> placed;
     visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
         checkReference(*this, index, "mesh", node.mesh, meshes.size());
-        if (node.mesh >= 0) placed.push_back({index, node.mesh, toWorld});
+        if (node.mesh < 0) return;
+        const glm::dmat4 transform =
+            node.meshOrigin ? glm::translate(glm::dmat4(1.0), *node.meshOrigin) : toWorld;
+        if (node.copies.empty()) placed.push_back({index, node.mesh, transform});
+        for (const Placement& copy : node.copies) {
+            placed.push_back({index, node.mesh, transform * copy.matrix()});
+        }
     });
     return placed;
 }

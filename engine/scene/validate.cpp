@@ -27,8 +27,18 @@ public:
         for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
             const auto& primitives = scene_.meshes[m].primitives;
             for (std::size_t p = 0; p < primitives.size(); ++p) {
-                check(primitives[p], fmt::format("mesh {} primitive {}", m, p));
+                const std::string place = fmt::format("mesh {} primitive {}", m, p);
+                check(primitives[p], place);
+                if (primitives[p].targets.size() != primitives[0].targets.size())
+                    refuse(place, "has another number of morph targets than the mesh's first primitive",
+                           "give every primitive of a mesh as many");
             }
+            const std::size_t targets = primitives.empty() ? 0 : primitives[0].targets.size();
+            if (!scene_.meshes[m].weights.empty() && scene_.meshes[m].weights.size() != targets)
+                refuse(fmt::format("mesh {}", m),
+                       fmt::format("has {} weights for {} morph targets", scene_.meshes[m].weights.size(),
+                                   targets),
+                       "give none, or one per target");
         }
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i)
             check(scene_.cameras[i], fmt::format("camera {}", i));
@@ -39,6 +49,15 @@ public:
             index("environment", "image", scene_.environment->image, scene_.images.size(), -1);
         }
         checkPlacements();
+        for (std::size_t i = 0; i < scene_.skins.size(); ++i)
+            check(scene_.skins[i], fmt::format("skin {}", i));
+        for (std::size_t i = 0; i < scene_.nodes.size(); ++i)
+            checkDeformation(scene_.nodes[i], fmt::format("node {}", i));
+        for (std::size_t a = 0; a < scene_.animations.size(); ++a) {
+            const auto& channels = scene_.animations[a].channels;
+            for (std::size_t c = 0; c < channels.size(); ++c)
+                check(channels[c], fmt::format("animation {} channel {}", a, c));
+        }
     }
 
 private:
@@ -56,6 +75,10 @@ private:
         if (value >= low && value <= high) return;  // false for NaN
         refuse(place, fmt::format("its {} is {}", what, value),
                fmt::format("give a number from {} to {}", low, high));
+    }
+
+    void unit(const std::string& place, const char* what, double value) const {
+        number(place, what, value, 0, 1);
     }
 
     void color(const std::string& place, const char* what, glm::vec3 value) const {
@@ -101,12 +124,12 @@ private:
     }
 
     void check(const Material& material, const std::string& place) const {
-        for (int c = 0; c < 4; ++c) number(place, "baseColor", material.baseColor[c], 0, 1);
-        number(place, "metallic", material.metallic, 0, 1);
-        number(place, "roughness", material.roughness, 0, 1);
-        number(place, "specular", material.specular, 0, 1);
+        for (int c = 0; c < 4; ++c) unit(place, "baseColor", material.baseColor[c]);
+        unit(place, "metallic", material.metallic);
+        unit(place, "roughness", material.roughness);
+        unit(place, "specular", material.specular);
         number(place, "normalScale", material.normalScale, -largest, largest);
-        number(place, "occlusionStrength", material.occlusionStrength, 0, 1);
+        unit(place, "occlusionStrength", material.occlusionStrength);
         number(place, "ior", material.ior, 0, largest);
         number(place, "alphaCutoff", material.alphaCutoff, 0, largest);
         light(place, "emission", material.emission);
@@ -118,6 +141,42 @@ private:
         use(place, "emissiveTexture", material.emissiveTexture);
         use(place, "specularTexture", material.specularTexture);
         use(place, "specularColorTexture", material.specularColorTexture);
+        checkVolume(material, place);
+        checkCoats(material, place);
+    }
+
+    void checkVolume(const Material& material, const std::string& place) const {
+        unit(place, "transmission", material.transmission);
+        number(place, "thickness", material.thickness, 0, largest);
+        if (!(material.attenuationDistance > 0))
+            refuse(place, fmt::format("its attenuationDistance is {}", material.attenuationDistance),
+                   "give a number above 0; infinity for a clear medium");
+        for (int c = 0; c < 3; ++c) unit(place, "attenuationColor", material.attenuationColor[c]);
+        number(place, "dispersion", material.dispersion, 0, largest);
+        use(place, "transmissionTexture", material.transmissionTexture);
+        use(place, "thicknessTexture", material.thicknessTexture);
+    }
+
+    void checkCoats(const Material& material, const std::string& place) const {
+        unit(place, "clearcoat", material.clearcoat);
+        unit(place, "clearcoatRoughness", material.clearcoatRoughness);
+        number(place, "clearcoatNormalScale", material.clearcoatNormalScale, -largest, largest);
+        for (int c = 0; c < 3; ++c) unit(place, "sheenColor", material.sheenColor[c]);
+        unit(place, "sheenRoughness", material.sheenRoughness);
+        unit(place, "anisotropyStrength", material.anisotropyStrength);
+        number(place, "anisotropyRotation", material.anisotropyRotation, -largest, largest);
+        unit(place, "iridescence", material.iridescence);
+        number(place, "iridescenceIor", material.iridescenceIor, 1, largest);
+        number(place, "iridescenceThicknessMinimum", material.iridescenceThicknessMinimum, 0, largest);
+        number(place, "iridescenceThicknessMaximum", material.iridescenceThicknessMaximum, 0, largest);
+        use(place, "clearcoatTexture", material.clearcoatTexture);
+        use(place, "clearcoatRoughnessTexture", material.clearcoatRoughnessTexture);
+        use(place, "clearcoatNormalTexture", material.clearcoatNormalTexture);
+        use(place, "sheenColorTexture", material.sheenColorTexture);
+        use(place, "sheenRoughnessTexture", material.sheenRoughnessTexture);
+        use(place, "anisotropyTexture", material.anisotropyTexture);
+        use(place, "iridescenceTexture", material.iridescenceTexture);
+        use(place, "iridescenceThicknessTexture", material.iridescenceThicknessTexture);
     }
 
     void perVertex(const std::string& place, const char* what, std::size_t size, std::size_t vertices) const {
@@ -149,6 +208,109 @@ private:
         finite(place, "tangent", primitive.tangents);
         finite(place, "color", primitive.colors);
         for (const auto& set : primitive.texcoords) finite(place, "texture coordinate", set);
+        if (!primitive.variantMaterials.empty() &&
+            primitive.variantMaterials.size() != scene_.variants.size()) {
+            refuse(place, fmt::format("has {} variant materials", primitive.variantMaterials.size()),
+                   fmt::format("give none, or one for each of the {} variants", scene_.variants.size()));
+        }
+        for (int material : primitive.variantMaterials)
+            index(place, "variant material", material, scene_.materials.size(), -1);
+        checkDeformation(primitive, place);
+    }
+
+    void checkDeformation(const Primitive& primitive, const std::string& place) const {
+        const std::size_t vertices = primitive.positions.size();
+        for (const MorphTarget& target : primitive.targets) {
+            perVertex(place, "morph positions", target.positions.size(), vertices);
+            perVertex(place, "morph normals", target.normals.size(), vertices);
+            perVertex(place, "morph tangents", target.tangents.size(), vertices);
+            finite(place, "morph position", target.positions);
+            finite(place, "morph normal", target.normals);
+            finite(place, "morph tangent", target.tangents);
+        }
+        if (primitive.joints.size() != primitive.weights.size()) {
+            refuse(place,
+                   fmt::format("has {} sets of joints and {} of weights", primitive.joints.size(),
+                               primitive.weights.size()),
+                   "give as many of both");
+        }
+        for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+            const auto& joints = primitive.joints[set];
+            const auto& weights = primitive.weights[set];
+            if (joints.size() != vertices || weights.size() != vertices)
+                refuse(place, "has joints or weights that are not one per position", "give one per position");
+            finite(place, "joint weight", weights);
+        }
+    }
+
+    /** What a node's mesh asks of the node: as many weights as targets, and joints that its skin has. */
+    void checkDeformation(const Node& node, const std::string& place) const {
+        index(place, "skin", node.skin, scene_.skins.size(), -1);
+        if (node.mesh < 0 || std::size_t(node.mesh) >= scene_.meshes.size()) return;
+        const auto& primitives = scene_.meshes[std::size_t(node.mesh)].primitives;
+        for (const Primitive& primitive : primitives) {
+            if (!node.weights.empty() && node.weights.size() != primitive.targets.size())
+                refuse(place,
+                       fmt::format("has {} morph weights, its mesh {} targets", node.weights.size(),
+                                   primitive.targets.size()),
+                       "give one weight per target");
+            if (node.skin < 0) continue;
+            const std::size_t joints = scene_.skins[std::size_t(node.skin)].joints.size();
+            for (const auto& set : primitive.joints) {
+                for (const glm::u16vec4& four : set) {
+                    const std::size_t most = std::max({four.x, four.y, four.z, four.w});
+                    if (most >= joints)
+                        refuse(place, fmt::format("its mesh names joint {}", most),
+                               fmt::format("its skin {} has {}", node.skin, joints));
+                }
+            }
+        }
+    }
+
+    void check(const Skin& skin, const std::string& place) const {
+        if (skin.joints.empty()) refuse(place, "has no joints", "give at least one");
+        for (int joint : skin.joints) index(place, "joint", joint, scene_.nodes.size(), 0);
+        if (!skin.inverseBindMatrices.empty() && skin.inverseBindMatrices.size() != skin.joints.size()) {
+            refuse(place,
+                   fmt::format("has {} inverse bind matrices for {} joints", skin.inverseBindMatrices.size(),
+                               skin.joints.size()),
+                   "give none, or one per joint");
+        }
+        for (const glm::mat4& matrix : skin.inverseBindMatrices) {
+            for (int c = 0; c < 4; ++c) {
+                for (int r = 0; r < 4; ++r)
+                    number(place, "inverse bind matrix", matrix[c][r], -largest, largest);
+            }
+        }
+    }
+
+    void check(const AnimationChannel& channel, const std::string& place) const {
+        index(place, "node", channel.node, scene_.nodes.size(), 0);
+        const Node& node = scene_.nodes[std::size_t(channel.node)];
+        std::size_t width = channel.path == AnimationPath::Rotation ? 4 : 3;
+        if (channel.path == AnimationPath::Weights) {
+            width = 0;
+            if (node.mesh >= 0 && std::size_t(node.mesh) < scene_.meshes.size() &&
+                !scene_.meshes[std::size_t(node.mesh)].primitives.empty())
+                width = scene_.meshes[std::size_t(node.mesh)].primitives[0].targets.size();
+        } else if (node.matrix) {
+            refuse(place, fmt::format("moves node {}, which has a matrix", channel.node),
+                   "give the node translation, rotation and scale");
+        }
+        if (channel.times.empty()) refuse(place, "has no times", "give at least one");
+        for (std::size_t i = 0; i < channel.times.size(); ++i) {
+            if (std::isfinite(channel.times[i]) && (i == 0 || channel.times[i] >= channel.times[i - 1]))
+                continue;
+            refuse(place, fmt::format("time {} is {}", i, channel.times[i]), "give finite times that ascend");
+        }
+        const std::size_t values =
+            channel.times.size() * width * (channel.interpolation == Interpolation::CubicSpline ? 3 : 1);
+        if (channel.values.size() != values) {
+            refuse(place,
+                   fmt::format("has {} values for {} times", channel.values.size(), channel.times.size()),
+                   fmt::format("give {}", values));
+        }
+        for (float value : channel.values) number(place, "value", value, -largest, largest);
     }
 
     void check(const Camera& camera, const std::string& place) const {

@@ -20,7 +20,8 @@ glm::vec4 withBits(const glm::vec3& v, std::uint32_t bits) {
     return {v, glm::uintBitsToFloat(bits)};
 }
 
-/** What the packed arrays cannot show, named once each. Only materials that some instance uses count. */
+/** What the packed arrays cannot show, named once each. Only materials that some instance uses count. A pass
+ * that learns to shade one of these takes its line out. */
 void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed) {
     std::set<std::pair<std::string, std::string>> named;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -36,6 +37,16 @@ void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, Pack
             named.emplace("alpha masks and blending", "surfaces are opaque");
         if (m.unlit) named.emplace("unlit materials", "surfaces scatter as Lambert with their base colour");
         if (m.occlusionTexture) named.emplace("occlusion textures", "occlusion is computed, not read");
+        const auto skipIf = [&](bool isAsked, const char* what) {
+            if (isAsked) named.emplace(what, "surfaces scatter as Lambert with their base colour");
+        };
+        skipIf(m.transmission > 0.0f, "transmission");
+        skipIf(m.thickness > 0.0f, "volumes");
+        skipIf(m.dispersion > 0.0f, "dispersion");
+        skipIf(m.clearcoat > 0.0f, "clearcoat");
+        skipIf(m.sheenColor != glm::vec3(0.0f), "sheen");
+        skipIf(m.anisotropyStrength > 0.0f, "anisotropy");
+        skipIf(m.iridescence > 0.0f, "iridescence");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
     packed.skipped.assign(named.begin(), named.end());

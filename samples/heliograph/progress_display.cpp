@@ -64,8 +64,8 @@ void ProgressDisplay::finish() {
     lineOpen_ = false;
 }
 
-std::optional<Scene> loadShowingProgress(const std::string& source, ProgressDisplay& display) try {
-    LoadOptions options;
+std::optional<Scene> loadShowingProgress(const std::string& source, ProgressDisplay& display,
+                                         LoadOptions options) try {
     options.progress = [&](const LoadProgress& progress) {
         display.update(progress);
         return !interrupted();

@@ -34,7 +34,9 @@ private:
     double nextLoadLineAt_ = 5;  ///< the same for loading
 };
 
-/** Loads a scene, which a signal may stop: there is none then. */
-std::optional<Scene> loadShowingProgress(const std::string& source, ProgressDisplay& display);
+/** Loads a scene, which a signal may stop: there is none then. `options` are those of load(), its progress
+ * excepted. */
+std::optional<Scene> loadShowingProgress(const std::string& source, ProgressDisplay& display,
+                                         LoadOptions options = {});
 
 }  // namespace helio::cli

@@ -28,6 +28,7 @@ struct RenderArguments {
     std::string stats, graph;
     std::string device = "auto";
     bool noNextEvent = false, validate = false, quiet = false;
+    LoadOptions load;
     RenderOptions options;
 };
 
@@ -190,7 +191,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         return !interrupted();
     };
 
-    const std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display);
+    const std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display, arguments.load);
     if (!loaded || interrupted()) return reportNothingWritten();
     const Scene& scene = *loaded;
     DeviceOptions device;
@@ -256,6 +257,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_option("--size", arguments->size, "Pixels, WxH; the vertical field of view is kept")
         ->capture_default_str();
     command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
+    command->add_option("--variant", arguments->load.variant,
+                        "Name of the material variant to show (KHR_materials_variants)");
     command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
     command->add_option("--spp", options.samples, "Samples per pixel")
         ->check(CLI::Range(1u, (1u << 24) - 1))

@@ -90,7 +90,7 @@ TEST_F(Gltf, ReadsMaterials) {
             "KHR_materials_ior": {"ior": 1.33},
             "KHR_materials_specular": {"specularFactor": 0.25, "specularColorFactor": [1, 2, 3]},
             "KHR_materials_unlit": {},
-            "KHR_materials_sheen": {"sheenRoughnessFactor": 1}}}])");
+            "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1}}}])");
     const Scene scene = load(file);
     const Material& plain = scene.materials[0];
     EXPECT_EQ(plain.baseColor, glm::vec4(1));
@@ -112,7 +112,7 @@ TEST_F(Gltf, ReadsMaterials) {
     EXPECT_EQ(all.alphaCutoff, 0.25f);
     EXPECT_TRUE(all.doubleSided);
     EXPECT_TRUE(all.unlit);
-    EXPECT_EQ(all.unsupported, std::vector<std::string>{"KHR_materials_sheen"});
+    EXPECT_EQ(all.unsupported, std::vector<std::string>{"KHR_materials_diffuse_transmission"});
 }
 
 TEST_F(Gltf, BringsFactorsIntoTheirRangeWithAWarning) {

@@ -48,7 +48,8 @@ TEST(ValidateScene, AcceptsAWholeSceneAndAnEmptyOne) {
 
 TEST(ValidateScene, AcceptsTheBrightestLight) {
     Scene scene = whole();
-    scene.materials[0].emission = scene.lights[0].intensity = scene.environment->radiance = glm::vec3(0x1p100f);
+    scene.materials[0].emission = scene.lights[0].intensity = scene.environment->radiance =
+        glm::vec3(0x1p100f);
     EXPECT_NO_THROW(scene.validate());
 }
 
@@ -58,6 +59,23 @@ TEST(ValidateScene, RefusesEachFaultNamingItsPlace) {
         std::function<void(Scene&)> make;
     };
     const auto primitive = [](Scene& scene) -> Primitive& { return scene.meshes[0].primitives[0]; };
+    const auto skin = [&](Scene& scene) {
+        scene.skins = {{"skin", {0}, {}}};
+        scene.nodes[0].skin = 0;
+        primitive(scene).joints.assign(1, std::vector<glm::u16vec4>(3, glm::u16vec4(0)));
+        primitive(scene).weights.assign(1, std::vector<glm::vec4>(3, glm::vec4(1, 0, 0, 0)));
+    };
+    const auto channel = [](Scene& scene) -> AnimationChannel& {
+        scene.animations = {
+            {"animation",
+             {{0, AnimationPath::Translation, Interpolation::Linear, {0, 1}, std::vector<float>(6)}}}};
+        return scene.animations[0].channels[0];
+    };
+    for (const auto& make : {std::function<void(Scene&)>(skin), std::function<void(Scene&)>(channel)}) {
+        Scene scene = whole();
+        make(scene);
+        EXPECT_NO_THROW(scene.validate());
+    }
     const Fault faults[] = {
         {"image 0", [](Scene& s) { s.images[0].width = 2; }},
         {"image 0", [](Scene& s) { s.images[0] = {}; }},
@@ -100,6 +118,58 @@ TEST(ValidateScene, RefusesEachFaultNamingItsPlace) {
         {"node 0", [](Scene& s) { s.nodes[0].mesh = 4; }},
         {"node 0", [](Scene& s) { s.nodes[0].children = {0}; }},
         {"roots", [](Scene& s) { s.roots = {-1}; }},
+        {"material 0", [](Scene& s) { s.materials[0].transmission = 1.5f; }},
+        {"material 0", [](Scene& s) { s.materials[0].thickness = -1; }},
+        {"material 0", [](Scene& s) { s.materials[0].attenuationDistance = 0; }},
+        {"material 0", [](Scene& s) { s.materials[0].attenuationDistance = nan; }},
+        {"material 0", [](Scene& s) { s.materials[0].attenuationColor.g = 2; }},
+        {"material 0", [](Scene& s) { s.materials[0].clearcoat = nan; }},
+        {"material 0", [](Scene& s) { s.materials[0].clearcoatRoughness = -1; }},
+        {"material 0", [](Scene& s) { s.materials[0].clearcoatNormalScale = inf; }},
+        {"material 0", [](Scene& s) { s.materials[0].sheenColor.b = -1; }},
+        {"material 0", [](Scene& s) { s.materials[0].sheenRoughness = 2; }},
+        {"material 0", [](Scene& s) { s.materials[0].anisotropyStrength = 2; }},
+        {"material 0", [](Scene& s) { s.materials[0].anisotropyRotation = inf; }},
+        {"material 0", [](Scene& s) { s.materials[0].iridescence = -1; }},
+        {"material 0", [](Scene& s) { s.materials[0].iridescenceIor = 0.5f; }},
+        {"material 0", [](Scene& s) { s.materials[0].iridescenceThicknessMaximum = nan; }},
+        {"material 0", [](Scene& s) { s.materials[0].dispersion = -1; }},
+        {"material 0", [](Scene& s) { s.materials[0].sheenColorTexture.texture = 7; }},
+        {"mesh 0 primitive 0", [&](Scene& s) { primitive(s).variantMaterials = {0}; }},
+        {"mesh 0 primitive 0", [&](Scene& s) { s.variants = {"a"}, primitive(s).variantMaterials = {5}; }},
+        {"mesh 0 primitive 0",
+         [&](Scene& s) { primitive(s).targets.resize(1), primitive(s).targets[0].normals.resize(2); }},
+        {"mesh 0 primitive 0",
+         [&](Scene& s) {
+             primitive(s).targets = {{{{0, 0, 0}, {0, nan, 0}, {0, 0, 0}}, {}, {}}};
+         }},
+        {"mesh 0 primitive 1",
+         [&](Scene& s) { s.meshes[0].primitives.push_back(primitive(s)), primitive(s).targets.resize(1); }},
+        {"mesh 0", [](Scene& s) { s.meshes[0].weights = {1}; }},
+        {"mesh 0 primitive 0", [&](Scene& s) { primitive(s).joints.resize(1); }},
+        {"mesh 0 primitive 0", [&](Scene& s) { skin(s), primitive(s).weights[0].pop_back(); }},
+        {"mesh 0 primitive 0", [&](Scene& s) { skin(s), primitive(s).weights[0][1].w = nan; }},
+        {"node 0", [&](Scene& s) { skin(s), primitive(s).joints[0][2].z = 1; }},
+        {"node 0", [](Scene& s) { s.nodes[0].skin = 0; }},
+        {"node 0", [](Scene& s) { s.nodes[0].weights = {1}; }},
+        {"skin 0", [&](Scene& s) { skin(s), s.skins[0].joints = {3}; }},
+        {"skin 0", [&](Scene& s) { skin(s), s.skins[0].joints.clear(); }},
+        {"skin 0", [&](Scene& s) { skin(s), s.skins[0].inverseBindMatrices.resize(2); }},
+        {"skin 0", [&](Scene& s) { skin(s), s.skins[0].inverseBindMatrices = {glm::mat4(nan)}; }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s).node = 1; }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s).times = {}; }},
+        {"animation 0 channel 0",
+         [&](Scene& s) {
+             channel(s).times = {1, 0};
+         }},
+        {"animation 0 channel 0",
+         [&](Scene& s) {
+             channel(s).times = {0, nan};
+         }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s).values.pop_back(); }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s).values[3] = inf; }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s).path = AnimationPath::Weights; }},
+        {"animation 0 channel 0", [&](Scene& s) { channel(s), s.nodes[0].matrix = glm::mat4(1); }},
     };
     int index = 0;
     for (const Fault& fault : faults) {

@@ -107,6 +107,13 @@ struct Material {
     std::vector<std::string> unsupported;
 };
 
+/** What a morph weight of 1 adds to a primitive's attributes. Each is empty or one per position. */
+struct MorphTarget {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec3> tangents;
+};
+
 /** Triangles with one material. Attributes are empty or one per position. */
 struct Primitive {
     std::vector<glm::vec3> positions;
@@ -116,11 +123,20 @@ struct Primitive {
     std::vector<glm::vec4> colors;                  ///< linear, multiplies the base colour
     std::vector<std::uint32_t> indices;             ///< 3 per triangle; always filled
     int material = -1;                              ///< into Scene::materials; -1 for glTF's default material
+    /** The material under each of Scene::variants, as `material` counts. Empty: `material` under all. */
+    std::vector<int> variantMaterials;
+    std::vector<MorphTarget> targets;  ///< the same number in every primitive of a mesh
+    /** Per set of 4 influences and position: indices into Skin::joints, and weights whose sum over the sets
+     * is
+     * 1. Both empty for a primitive that no skin moves. */
+    std::vector<std::vector<glm::u16vec4>> joints;
+    std::vector<std::vector<glm::vec4>> weights;
 };
 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<float> weights{};  ///< per morph target, for nodes without weights; empty: 0
 };
 
 struct Camera {
@@ -143,6 +159,40 @@ struct PunctualLight {
     float outerConeAngle = 0.7853982f;
 };
 
+/** Translation, rotation and scale, applied from right to left. */
+struct Placement {
+    glm::vec3 translation{0.0f};
+    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+    glm::vec3 scale{1.0f};
+    /** The rotation is normalised; a zero one is none. */
+    glm::dmat4 matrix() const;
+};
+
+/** Joints that move the vertices of meshes. A skinned mesh ignores the transform of its own node. */
+struct Skin {
+    std::string name;
+    std::vector<int> joints;                     ///< into Scene::nodes
+    std::vector<glm::mat4> inverseBindMatrices;  ///< one per joint, or empty for identity
+};
+
+enum class AnimationPath : std::uint8_t { Translation, Rotation, Scale, Weights };
+enum class Interpolation : std::uint8_t { Linear, Step, CubicSpline };
+
+/** How one property of one node changes. A value has 3 numbers, or 4 (a quaternion x, y, z, w), or one per
+ * morph target. A cubic spline has three values per time: in-tangent, value, out-tangent. */
+struct AnimationChannel {
+    int node = -1;  ///< into Scene::nodes
+    AnimationPath path = AnimationPath::Translation;
+    Interpolation interpolation = Interpolation::Linear;
+    std::vector<float> times;  ///< seconds, ascending, at least one
+    std::vector<float> values;
+};
+
+struct Animation {
+    std::string name;
+    std::vector<AnimationChannel> channels;
+};
+
 /** A node of the hierarchy. The local transform is `matrix` where given, else translation, rotation, scale.
  */
 struct Node {
@@ -155,6 +205,13 @@ struct Node {
     int mesh = -1;
     int camera = -1;
     int light = -1;
+    int skin = -1;               ///< into Scene::skins, for `mesh`
+    std::vector<float> weights;  ///< per morph target of `mesh`; empty: the mesh's
+    /** Where copies of `mesh` stand in this node's space. Empty: one, as the node itself. */
+    std::vector<Placement> copies;
+    /** Where the mesh stands in the world, whatever the hierarchy says: a point that its vertices are
+     * relative to. For meshes whose vertices a skin placed. */
+    std::optional<glm::dvec3> meshOrigin;
     glm::dmat4 localTransform() const;
 };
 
@@ -164,8 +221,9 @@ struct Environment {
     int image = -1;            ///< lat-long, into Scene::images; -1 for constant
 };
 
-/** A mesh placed in the world: one per node that holds a mesh, in depth-first order from Scene::roots. Its
- * index is the instance id of outputs; triangle ids count a mesh's triangles over its primitives in order. */
+/** A mesh placed in the world: one per node that holds a mesh (or one per Node::copies), in depth-first order
+ * from Scene::roots. Its index is the instance id of outputs; triangle ids count a mesh's triangles over its
+ * primitives in order. */
 struct Instance {
     int node = -1;
     int mesh = -1;
@@ -192,6 +250,9 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Node> nodes;
     std::vector<int> roots;  ///< nodes of the shown scene
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
+    std::vector<std::string> variants;  ///< names that Primitive::variantMaterials counts by
     std::optional<Environment> environment;
     /** What the importer read over, as "WHAT: WHY" pairs for the statistics. */
     std::vector<std::pair<std::string, std::string>> skipped;
@@ -225,12 +286,19 @@ struct LoadProgress {
 
 struct LoadOptions {
     /** Called now and then, one call at a time, from any thread. Returning false stops the load. */
-    std::function<bool(const LoadProgress&)> progress;
+    std::function<bool(const LoadProgress&)> progress = {};
+    /** Name of one of the file's material variants, which is then shown; "" for the materials as they are. */
+    std::string variant = {};
+    /** Textures are loaded for the materials of all variants, for chooseVariant(); else for shown ones. */
+    bool everyVariant = false;
 };
 
 /** Loads a file by its extension (.gltf, .glb) or "sample:NAME". Throws InputError, or Cancelled where
  * LoadOptions::progress asked for it. */
 Scene load(const std::string& source, const LoadOptions& options = {});
+/** Gives every primitive the material that it has under one of Scene::variants. Throws InputError that lists
+ * them. Load with LoadOptions::everyVariant first. */
+void chooseVariant(Scene& scene, const std::string& name);
 /** Names of the built-in samples. */
 std::vector<std::string> sampleNames();
 

@@ -1,6 +1,7 @@
 #pragma once
 /** @file The parts of a glTF asset turned into parts of a Scene. */
 #include "engine/scene/gltf/accessors.hpp"
+#include "engine/scene/gltf/memory_budget.hpp"
 #include "engine/scene/image_decoding.hpp"
 #include "engine/scene/load_monitor.hpp"
 #include "engine/scene/notes.hpp"
@@ -16,15 +17,15 @@ namespace helio::gltf {
 /** Extensions whose meaning the scene model holds, in alphabetical order. */
 bool isSupported(const std::string& extension);
 
-/** Fills Scene::meshes. */
-void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene);
+/** Fills Scene::meshes and variants. */
+void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene);
 
 /** Fills Scene::materials, textures and images: the materials in `used` with their textures, the others
  * without. */
 void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& monitor, helio::Scene& scene);
 
 /** Fills Scene::nodes, roots, cameras and lights. Refuses cycles and nodes with two parents. */
-void buildNodes(const Asset& asset, helio::Scene& scene);
+void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
 
 /** Decodes images for textures: each distinct content once. */
 class ImageLoader {

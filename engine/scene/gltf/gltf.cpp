@@ -14,12 +14,25 @@ namespace helio {
 namespace gltf {
 
 bool isSupported(const std::string& extension) {
-    constexpr std::array<std::string_view, 7> supported{
-        "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-        "KHR_materials_ior",     "KHR_materials_specular",
-        "KHR_materials_unlit",   "KHR_mesh_quantization",
+    constexpr std::array supported = std::to_array<std::string_view>({
+        "EXT_mesh_gpu_instancing",
+        "EXT_texture_webp",
+        "KHR_lights_punctual",
+        "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat",
+        "KHR_materials_dispersion",
+        "KHR_materials_emissive_strength",
+        "KHR_materials_ior",
+        "KHR_materials_iridescence",
+        "KHR_materials_sheen",
+        "KHR_materials_specular",
+        "KHR_materials_transmission",
+        "KHR_materials_unlit",
+        "KHR_materials_variants",
+        "KHR_materials_volume",
+        "KHR_mesh_quantization",
         "KHR_texture_transform",
-    };
+    });
     return std::find(supported.begin(), supported.end(), extension) != supported.end();
 }
 
@@ -46,11 +59,14 @@ void checkExtensions(const Container& container, helio::Scene& scene) {
     if (has("animations")) skip(scene, "animations", "are not evaluated");
 }
 
-std::set<int> usedMaterials(const helio::Scene& scene) {
+/** Materials that some instance shows, under any variant if all are wanted. */
+std::set<int> usedMaterials(const helio::Scene& scene, bool everyVariant) {
     std::set<int> used;
     for (const Instance& instance : scene.instances()) {
         for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
             used.insert(primitive.material);
+            if (!everyVariant) continue;
+            used.insert(primitive.variantMaterials.begin(), primitive.variantMaterials.end());
         }
     }
     return used;
@@ -59,7 +75,7 @@ std::set<int> usedMaterials(const helio::Scene& scene) {
 }  // namespace
 }  // namespace gltf
 
-Scene loadGltf(const std::string& file, LoadMonitor& monitor) try {
+Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor& monitor) try {
     Scene scene;
     scene.name = file;
     gltf::Container container = gltf::readContainer(file);
@@ -67,9 +83,11 @@ Scene loadGltf(const std::string& file, LoadMonitor& monitor) try {
     gltf::checkExtensions(container, scene);
     monitor.report("buffers", 0);
     const gltf::Asset asset(std::move(container));
-    gltf::buildMeshes(asset, monitor, scene);
-    gltf::buildNodes(asset, scene);
-    gltf::buildMaterials(asset, gltf::usedMaterials(scene), monitor, scene);
+    gltf::MemoryBudget memory(asset);
+    gltf::buildMeshes(asset, memory, monitor, scene);
+    gltf::buildNodes(asset, memory, scene);
+    if (!options.variant.empty()) chooseVariant(scene, options.variant);
+    gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), monitor, scene);
     return scene;
 } catch (const std::bad_alloc&) {
     throw InputError(file, "", "does not fit in memory", "give a smaller file");

@@ -15,12 +15,11 @@ namespace helio {
 /**
  * Loads a .gltf or .glb file. Throws InputError with the file and the place in it, e.g. "accessors[3].count".
  * Read: meshes (all index and component types, sparse, strips, fans), nodes, cameras, metallic-roughness
- * materials, textures (PNG, JPEG; from files inside the file's folder, data URIs, buffer views),
- * KHR_lights_punctual, KHR_materials_emissive_strength, _ior, _specular, _unlit, KHR_mesh_quantization,
- * KHR_texture_transform. Everything else that the file has is named in Scene::skipped or
+ * materials, textures (PNG, JPEG, WebP; from files inside the file's folder, data URIs, buffer views), and
+ * the extensions that gltf.cpp lists. Everything else that the file has is named in Scene::skipped or
  * Material::unsupported; refused if it is required. Images are decoded once each, and only those that a
  * material of the shown scene uses; other materials come without their textures.
  */
-Scene loadGltf(const std::string& file, LoadMonitor& monitor);
+Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor& monitor);
 
 }  // namespace helio

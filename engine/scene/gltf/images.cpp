@@ -41,7 +41,7 @@ int ImageLoader::use(int image) {
 void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
     for (DecodingResult& image : decodeImages(sources_, monitor)) {
         if (!image.fault.empty())
-            throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG or JPEG image");
+            throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG, JPEG or WebP image");
         scene.images.push_back(std::move(image.image));
     }
 }

@@ -98,23 +98,101 @@ private:
         return float(std::clamp(value, 0.0, 1.0));
     }
 
+    glm::vec3 unit(const glm::vec3& value, const char* member) {
+        return {unit(value.r, member), unit(value.g, member), unit(value.b, member)};
+    }
+
+    /** An index of refraction: 0 stands for an infinite one, else none is below the vacuum's. */
+    float refraction(double value, const char* member) {
+        if (value == 0 || value >= 1) return float(value);
+        warn(scene_, fmt::format("materials[{}]: {} is {}, taken as 1", index_, member, value));
+        return 1;
+    }
+
     void readExtensions(const tinygltf::Material& from) {
-        if (const Value* strength = find(from.extensions, "KHR_materials_emissive_strength")) {
-            material_.emission *= float(numberOr(*strength, "emissiveStrength", 1));
+        using Read = void (MaterialBuilder::*)(const Value&);
+        constexpr std::pair<const char*, Read> readers[] = {
+            {"KHR_materials_anisotropy", &MaterialBuilder::readAnisotropy},
+            {"KHR_materials_clearcoat", &MaterialBuilder::readClearcoat},
+            {"KHR_materials_dispersion", &MaterialBuilder::readDispersion},
+            {"KHR_materials_emissive_strength", &MaterialBuilder::readEmissiveStrength},
+            {"KHR_materials_ior", &MaterialBuilder::readIor},
+            {"KHR_materials_iridescence", &MaterialBuilder::readIridescence},
+            {"KHR_materials_sheen", &MaterialBuilder::readSheen},
+            {"KHR_materials_specular", &MaterialBuilder::readSpecular},
+            {"KHR_materials_transmission", &MaterialBuilder::readTransmission},
+            {"KHR_materials_unlit", &MaterialBuilder::readUnlit},
+            {"KHR_materials_volume", &MaterialBuilder::readVolume},
+        };
+        for (const auto& [name, read] : readers) {
+            if (const Value* extension = find(from.extensions, name)) (this->*read)(*extension);
         }
-        if (const Value* ior = find(from.extensions, "KHR_materials_ior")) {
-            // 0 stands for an infinite index: the layer reflects all. Anything else below 1 has no meaning.
-            material_.ior = float(numberOr(*ior, "ior", 1.5));
-        }
-        if (const Value* specular = find(from.extensions, "KHR_materials_specular")) {
-            material_.specular = unit(numberOr(*specular, "specularFactor", 1), "specularFactor");
-            material_.specularColor = vectorOr(*specular, "specularColorFactor", glm::vec3(1));
-            material_.specularTexture = use(*specular, "specularTexture");
-            material_.specularColorTexture = use(*specular, "specularColorTexture");
-        }
-        material_.unlit = find(from.extensions, "KHR_materials_unlit") != nullptr;
         for (const auto& [name, value] : from.extensions) note(name);
         for (const auto& [name, value] : from.pbrMetallicRoughness.extensions) note(name);
+    }
+
+    void readAnisotropy(const Value& from) {
+        material_.anisotropyStrength = unit(numberOr(from, "anisotropyStrength", 0), "anisotropyStrength");
+        material_.anisotropyRotation = float(numberOr(from, "anisotropyRotation", 0));
+        material_.anisotropyTexture = use(from, "anisotropyTexture");
+    }
+
+    void readClearcoat(const Value& from) {
+        material_.clearcoat = unit(numberOr(from, "clearcoatFactor", 0), "clearcoatFactor");
+        material_.clearcoatTexture = use(from, "clearcoatTexture");
+        material_.clearcoatRoughness =
+            unit(numberOr(from, "clearcoatRoughnessFactor", 0), "clearcoatRoughnessFactor");
+        material_.clearcoatRoughnessTexture = use(from, "clearcoatRoughnessTexture");
+        material_.clearcoatNormalTexture = use(from, "clearcoatNormalTexture");
+        if (material_.clearcoatNormalTexture)
+            material_.clearcoatNormalScale = float(numberOr(from.Get("clearcoatNormalTexture"), "scale", 1));
+    }
+
+    void readDispersion(const Value& from) { material_.dispersion = float(numberOr(from, "dispersion", 0)); }
+
+    void readEmissiveStrength(const Value& from) {
+        material_.emission *= float(numberOr(from, "emissiveStrength", 1));
+    }
+
+    void readIor(const Value& from) { material_.ior = refraction(numberOr(from, "ior", 1.5), "ior"); }
+
+    void readIridescence(const Value& from) {
+        material_.iridescence = unit(numberOr(from, "iridescenceFactor", 0), "iridescenceFactor");
+        material_.iridescenceTexture = use(from, "iridescenceTexture");
+        material_.iridescenceIor = float(numberOr(from, "iridescenceIor", 1.3));
+        material_.iridescenceThicknessMinimum = float(numberOr(from, "iridescenceThicknessMinimum", 100));
+        material_.iridescenceThicknessMaximum = float(numberOr(from, "iridescenceThicknessMaximum", 400));
+        material_.iridescenceThicknessTexture = use(from, "iridescenceThicknessTexture");
+    }
+
+    void readSheen(const Value& from) {
+        material_.sheenColor = unit(vectorOr(from, "sheenColorFactor", glm::vec3(0)), "sheenColorFactor");
+        material_.sheenColorTexture = use(from, "sheenColorTexture");
+        material_.sheenRoughness = unit(numberOr(from, "sheenRoughnessFactor", 0), "sheenRoughnessFactor");
+        material_.sheenRoughnessTexture = use(from, "sheenRoughnessTexture");
+    }
+
+    void readSpecular(const Value& from) {
+        material_.specular = unit(numberOr(from, "specularFactor", 1), "specularFactor");
+        material_.specularColor = vectorOr(from, "specularColorFactor", glm::vec3(1));
+        material_.specularTexture = use(from, "specularTexture");
+        material_.specularColorTexture = use(from, "specularColorTexture");
+    }
+
+    void readTransmission(const Value& from) {
+        material_.transmission = unit(numberOr(from, "transmissionFactor", 0), "transmissionFactor");
+        material_.transmissionTexture = use(from, "transmissionTexture");
+    }
+
+    void readUnlit(const Value&) { material_.unlit = true; }
+
+    void readVolume(const Value& from) {
+        material_.thickness = float(numberOr(from, "thicknessFactor", 0));
+        material_.thicknessTexture = use(from, "thicknessTexture");
+        if (from.Has("attenuationDistance"))
+            material_.attenuationDistance = float(numberOr(from, "attenuationDistance", 0));
+        material_.attenuationColor =
+            unit(vectorOr(from, "attenuationColor", glm::vec3(1)), "attenuationColor");
     }
 
     void note(const std::string& extension) {
@@ -171,14 +249,17 @@ private:
     int sceneTexture(int texture) {
         if (const auto known = textures_.find(texture); known != textures_.end()) return known->second;
         const tinygltf::Texture& from = asset_.model().textures[std::size_t(texture)];
-        if (from.source < 0) {
+        int source = from.source;
+        if (const Value* webp = find(from.extensions, "EXT_texture_webp"))
+            source = webp->Get("source").GetNumberAsInt();
+        if (source < 0) {
             for (const auto& [name, value] : from.extensions) note(name);
-            skip(scene_, fmt::format("texture {}", texture), "it has no PNG or JPEG image");
+            skip(scene_, fmt::format("texture {}", texture), "it has no PNG, JPEG or WebP image");
             return textures_[texture] = -1;
         }
         Texture result;
         result.name = from.name;
-        result.image = images_.use(from.source);
+        result.image = images_.use(source);
         if (from.sampler >= 0) setSampler(asset_.model().samplers[std::size_t(from.sampler)], result);
         scene_.textures.push_back(result);
         return textures_[texture] = int(scene_.textures.size()) - 1;

@@ -10,32 +10,6 @@
 namespace helio::gltf {
 namespace {
 
-/** Primitives may share an accessor, and an accessor need have no data, so that a small file unfolds to any
- * size. Unfolded meshes stay in proportion to what was read: without sharing the factor is at most 12 (a
- * strip of one-byte indices); the constant leaves room for small files that share on purpose. */
-class MemoryBudget {
-public:
-    explicit MemoryBudget(const Asset& asset)
-        : asset_(asset), most_(asset.bytes() * 32 + (std::size_t(192) << 20)) {}
-
-    /** Takes memory that stays, and asks for some that goes again. Refuses before either is there. */
-    void take(const std::string& place, std::size_t kept, std::size_t transient) {
-        if (kept > most_ || transient > most_ || used_ + kept + transient > most_) {
-            throw InputError(
-                asset_.file(), place,
-                fmt::format("unfolds the meshes to more than {} MiB, for a file and buffers of {} bytes",
-                            most_ >> 20, asset_.bytes()),
-                "let fewer primitives share an accessor, and give accessors data");
-        }
-        used_ += kept;
-    }
-
-private:
-    const Asset& asset_;
-    std::size_t most_;
-    std::size_t used_ = 0;
-};
-
 /** glTF 2.0, section 3.7.2.1: three indices per triangle of a list, strip or fan. */
 std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, int mode) {
     if (mode == TINYGLTF_MODE_TRIANGLES) return v;
@@ -228,10 +202,35 @@ private:
     std::vector<std::uint32_t> kept_;  ///< those that are kept; empty for all
 };
 
+void readVariantNames(const Asset& asset, helio::Scene& scene) {
+    const nlohmann::json::json_pointer path("/extensions/KHR_materials_variants/variants");
+    if (!asset.document().contains(path)) return;
+    for (const nlohmann::json& variant : asset.document()[path])
+        scene.variants.push_back(variant["name"].get<std::string>());
+}
+
+/** KHR_materials_variants: a variant that no mapping names keeps the primitive's own material. */
+void readVariants(const tinygltf::Primitive& from, const std::string& place, const helio::Scene& scene,
+                  MemoryBudget& memory, Primitive& primitive) {
+    const auto found = from.extensions.find("KHR_materials_variants");
+    if (found == from.extensions.end()) return;
+    memory.take(place, scene.variants.size() * sizeof(int), 0);
+    primitive.variantMaterials.assign(scene.variants.size(), primitive.material);
+    const tinygltf::Value& mappings = found->second.Get("mappings");
+    for (std::size_t m = 0; m < mappings.ArrayLen(); ++m) {
+        const tinygltf::Value& mapping = mappings.Get(int(m));
+        const tinygltf::Value& variants = mapping.Get("variants");
+        for (std::size_t v = 0; v < variants.ArrayLen(); ++v) {
+            const auto variant = std::size_t(variants.Get(int(v)).GetNumberAsInt());
+            primitive.variantMaterials[variant] = mapping.Get("material").GetNumberAsInt();
+        }
+    }
+}
+
 }  // namespace
 
-void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene) {
-    MemoryBudget memory(asset);
+void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
+    readVariantNames(asset, scene);
     for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
         const tinygltf::Mesh& from = asset.model().meshes[m];
         Mesh mesh;
@@ -247,8 +246,11 @@ void buildMeshes(const Asset& asset, LoadMonitor& monitor, helio::Scene& scene) 
                      "only triangles are shown");
                 continue;
             }
-            for (const auto& [name, value] : primitive.extensions) skip(scene, name, "is not supported");
+            for (const auto& [name, value] : primitive.extensions) {
+                if (!isSupported(name)) skip(scene, name, "is not supported");
+            }
             Primitive built = PrimitiveBuilder(asset, scene, place, memory).build(primitive);
+            readVariants(primitive, place, scene, memory, built);
             if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
         }
         scene.meshes.push_back(std::move(mesh));

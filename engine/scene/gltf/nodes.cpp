@@ -87,7 +87,48 @@ glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std:
     return glm::quat(q / length);
 }
 
-Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, helio::Scene& scene) {
+/** EXT_mesh_gpu_instancing: accessors of one translation, rotation and scale per copy of the node's mesh. */
+std::vector<Placement> copiesOf(const Asset& asset, const tinygltf::Value& attributes, std::size_t node,
+                                MemoryBudget& memory, helio::Scene& scene) {
+    const std::string place = fmt::format("nodes[{}].extensions.EXT_mesh_gpu_instancing.attributes", node);
+    std::vector<Placement> copies;
+    bool isFirst = true;
+    for (const std::string& name : attributes.Keys()) {
+        const int accessor = attributes.Get(name).GetNumberAsInt();
+        asset.check(accessor);
+        if (!isFirst && asset.count(accessor) != copies.size()) {
+            throw InputError(
+                asset.file(), place + "." + name,
+                fmt::format("has {} elements, another attribute {}", asset.count(accessor), copies.size()),
+                "give every attribute one element per copy");
+        }
+        if (isFirst) {
+            const std::size_t count = asset.count(accessor);
+            memory.take(place, count * (sizeof(Placement) + sizeof(Instance)), count * 4 * sizeof(float));
+        }
+        isFirst = false;
+        copies.resize(asset.count(accessor));
+        if (name == "ROTATION") {
+            const std::vector<float> values = asset.floats(accessor, 4, place + "." + name);
+            for (std::size_t i = 0; i < copies.size(); ++i) {
+                const float* const q = &values[i * 4];
+                copies[i].rotation = glm::quat(q[3], q[0], q[1], q[2]);
+            }
+        } else if (name == "TRANSLATION" || name == "SCALE") {
+            const std::vector<float> values = asset.floats(accessor, 3, place + "." + name);
+            for (std::size_t i = 0; i < copies.size(); ++i) {
+                glm::vec3& part = name == "SCALE" ? copies[i].scale : copies[i].translation;
+                part = glm::vec3(values[i * 3], values[i * 3 + 1], values[i * 3 + 2]);
+            }
+        } else {
+            skip(scene, "attribute " + name + " of copies", "the scene model has no place for it");
+        }
+    }
+    return copies;
+}
+
+Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, MemoryBudget& memory,
+            helio::Scene& scene) {
     const auto vectorOf = [](const std::vector<double>& v) { return glm::vec3(v[0], v[1], v[2]); };
     Node node;
     node.name = from.name;
@@ -101,6 +142,8 @@ Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, h
     for (const auto& [name, value] : from.extensions) {
         if (name == "KHR_lights_punctual") {
             node.light = value.Get("light").GetNumberAsInt();
+        } else if (name == "EXT_mesh_gpu_instancing") {
+            node.copies = copiesOf(asset, value.Get("attributes"), index, memory, scene);
         } else {
             skip(scene, name, "is not supported");
         }
@@ -142,12 +185,12 @@ std::vector<int> parents(const Asset& asset, const helio::Scene& scene) {
 
 }  // namespace
 
-void buildNodes(const Asset& asset, helio::Scene& scene) {
+void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
     buildCameras(asset, scene);
     buildLights(asset, scene);
     const tinygltf::Model& model = asset.model();
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-        scene.nodes.push_back(nodeOf(asset, model.nodes[i], i, scene));
+        scene.nodes.push_back(nodeOf(asset, model.nodes[i], i, memory, scene));
     }
     const std::vector<int> parent = parents(asset, scene);
     if (model.scenes.empty()) {

@@ -68,14 +68,42 @@ Check textureInfo(std::vector<Property> more = {}) {
 }
 
 Check materialExtensions() {
+    const Check color = arrayOf(number(0), 3, 3);
+    const Check texture = textureInfo();
+    const Check anything = anyNumber();
     return object({
+        {"KHR_materials_anisotropy", object({{"anisotropyStrength", anything},
+                                             {"anisotropyRotation", anything},
+                                             {"anisotropyTexture", texture}})},
+        {"KHR_materials_clearcoat", object({{"clearcoatFactor", anything},
+                                            {"clearcoatTexture", texture},
+                                            {"clearcoatRoughnessFactor", anything},
+                                            {"clearcoatRoughnessTexture", texture},
+                                            {"clearcoatNormalTexture", textureInfo({{"scale", anything}})}})},
+        {"KHR_materials_dispersion", object({{"dispersion", number(0)}})},
         {"KHR_materials_emissive_strength", object({{"emissiveStrength", number(0)}})},
         {"KHR_materials_ior", object({{"ior", number(0)}})},
+        {"KHR_materials_iridescence", object({{"iridescenceFactor", anything},
+                                              {"iridescenceTexture", texture},
+                                              {"iridescenceIor", number(1)},
+                                              {"iridescenceThicknessMinimum", number(0)},
+                                              {"iridescenceThicknessMaximum", number(0)},
+                                              {"iridescenceThicknessTexture", texture}})},
+        {"KHR_materials_sheen", object({{"sheenColorFactor", color},
+                                        {"sheenColorTexture", texture},
+                                        {"sheenRoughnessFactor", anything},
+                                        {"sheenRoughnessTexture", texture}})},
         {"KHR_materials_specular", object({{"specularFactor", number(0)},
-                                           {"specularTexture", textureInfo()},
-                                           {"specularColorFactor", arrayOf(number(0), 3, 3)},
-                                           {"specularColorTexture", textureInfo()}})},
+                                           {"specularTexture", texture},
+                                           {"specularColorFactor", color},
+                                           {"specularColorTexture", texture}})},
+        {"KHR_materials_transmission",
+         object({{"transmissionFactor", anything}, {"transmissionTexture", texture}})},
         {"KHR_materials_unlit", object({})},
+        {"KHR_materials_volume", object({{"thicknessFactor", number(0)},
+                                         {"thicknessTexture", texture},
+                                         {"attenuationDistance", positive()},
+                                         {"attenuationColor", color}})},
     });
 }
 
@@ -100,6 +128,13 @@ Check material() {
     });
 }
 
+Check variants() {
+    const Check index = indexInto("extensions.KHR_materials_variants.variants");
+    const Check mapping =
+        object({{"material", indexInto("materials"), required}, {"variants", arrayOf(index, 1), required}});
+    return object({{"mappings", arrayOf(mapping), required}});
+}
+
 Check mesh() {
     const Check attributes = mapOf(indexInto("accessors"));
     const Check primitive = object({{"attributes", attributes, required},
@@ -107,7 +142,7 @@ Check mesh() {
                                     {"material", indexInto("materials")},
                                     {"mode", integer(0, 6)},
                                     {"targets", arrayOf(attributes)},
-                                    {"extensions", object({})}});
+                                    {"extensions", object({{"KHR_materials_variants", variants()}})}});
     return object({{"name", string()},
                    {"primitives", arrayOf(primitive, 1), required},
                    {"weights", arrayOf(anyNumber())},
@@ -116,6 +151,7 @@ Check mesh() {
 
 Check node() {
     const Check light = object({{"light", indexInto("extensions.KHR_lights_punctual.lights"), required}});
+    const Check copies = object({{"attributes", mapOf(indexInto("accessors")), required}});
     const Check members = object({
         {"name", string()},
         {"children", arrayOf(indexInto("nodes"))},
@@ -127,7 +163,7 @@ Check node() {
         {"camera", indexInto("cameras")},
         {"skin", indexInto("skins")},
         {"weights", arrayOf(anyNumber())},
-        {"extensions", object({{"KHR_lights_punctual", light}})},
+        {"extensions", object({{"KHR_lights_punctual", light}, {"EXT_mesh_gpu_instancing", copies}})},
     });
     return [members](const Context& context, const Place& place, const nlohmann::json& value) {
         members(context, place, value);
@@ -189,6 +225,7 @@ bool isAtMostTwo(std::string_view version) {
 }
 
 const Check& documentCheck() {
+    const Check webp = object({{"source", indexInto("images"), required}});
     static const Check check = object({
         {"asset", asset(), required},
         {"extensionsUsed", arrayOf(string())},
@@ -212,14 +249,17 @@ const Check& documentCheck() {
         {"textures", arrayOf(object({{"name", string()},
                                      {"sampler", indexInto("samplers")},
                                      {"source", indexInto("images")},
-                                     {"extensions", object({})}}))},
+                                     {"extensions", object({{"EXT_texture_webp", webp}})}}))},
         {"materials", arrayOf(material())},
         {"meshes", arrayOf(mesh())},
         {"cameras", arrayOf(camera())},
         {"nodes", arrayOf(node())},
         {"scenes", arrayOf(object({{"name", string()}, {"nodes", arrayOf(indexInto("nodes"))}}))},
         {"scene", indexInto("scenes")},
-        {"extensions", object({{"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})}})},
+        {"extensions",
+         object({{"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})},
+                 {"KHR_materials_variants",
+                  object({{"variants", arrayOf(object({{"name", string(), required}})), required}})}})},
     });
     return check;
 }

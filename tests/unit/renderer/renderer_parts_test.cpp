@@ -120,6 +120,10 @@ TEST(SceneIdentity, ChangesWithWhatIsSeenAndNotWithNamesOrCameras) {
     EXPECT_TRUE(changed(
         [](Scene& s, Sky&) { s.meshes[0].primitives[0].material = 1 - s.meshes[0].primitives[0].material; }));
     EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials.back().roughness = 0.123f; }));
+    EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials[0].transmission = 0.5f; }));
+    EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials[0].sheenColor.b = 0.5f; }));
+    EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials[0].iridescenceThicknessTexture.texcoord = 1; }));
+    EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials[0].unsupported = {"X"}; }));
     EXPECT_TRUE(changed([](Scene& s, Sky&) { s.materials[0].doubleSided = !s.materials[0].doubleSided; }));
     EXPECT_TRUE(changed([](Scene&, Sky& sky) { sky = Environment{glm::vec3(0.5f), -1}; }));
     EXPECT_TRUE(changed([](Scene& s, Sky&) {
