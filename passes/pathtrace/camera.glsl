@@ -2,6 +2,7 @@
 #define HELIOGRAPH_PATHTRACE_CAMERA
 /** @file Camera rays: the inverse of the rasterizer's projection. Pixel (0, 0) is the upper left one, its
  * centre at (0.5, 0.5). */
+#include "shaders/dispatch.glsl"
 
 /** See CameraFrame in passes/pathtrace/camera_frame.hpp. */
 struct CameraFrame {
@@ -20,14 +21,6 @@ void cameraRay(CameraFrame camera, vec2 point, uvec2 size, out vec3 origin, out 
     const vec3 across = camera.right.xyz * x + camera.up.xyz * y;
     origin = ORTHOGRAPHIC ? camera.origin.xyz + across : camera.origin.xyz;
     direction = ORTHOGRAPHIC ? camera.forward.xyz : normalize(camera.forward.xyz + across);
-}
-
-/** Workgroups are handed to the driver's threads in halves: neighbours go to different ones. */
-uint interleavedGroup() {
-    const uint count = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
-    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint middle = count >> 1;
-    return group < 2u * middle ? (group < middle ? group * 2u : (group - middle) * 2u + 1u) : group;
 }
 
 /** Pixel of this invocation in workgroups of 64: 8 x 8 tiles of 4 x 2 blocks, so that lanes of a group of 8

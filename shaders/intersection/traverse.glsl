@@ -1,9 +1,10 @@
 #ifndef HELIOGRAPH_INTERSECTION_TRAVERSE
 #define HELIOGRAPH_INTERSECTION_TRAVERSE
 /** @file
- * Traversal of the eight-wide quantised tree of engine/scene/bvh.hpp: each turn of the loop takes one step
- * down the tree and tests one triangle, so that lanes busy with either keep together. Triangles found wait in
- * a queue of two nodes' leaves.
+ * Traversal of the eight-wide quantised tree of engine/scene/bvh.hpp: each turn takes one step down the tree
+ * and tests one triangle, so that lanes busy with either keep together. Triangles found wait in a queue of two
+ * nodes' leaves. A Traversal can be left and taken up between turns: a kernel may hand a lane whose ray is
+ * done the next one (passes/intersect), or call traverse() and wait for the slowest lane.
  *
  * The boxes' planes are widened by a bound of the rounding in them, so that no box whose triangle is hit is
  * missed. With u = 2^-24 and inv = fl(1/d): a plane's distance is computed as q * a + o with a = fl(s * inv)
@@ -12,6 +13,9 @@
  *
  * Distances are compared as integers (IEEE order of non-negative floats; a negative far plane stays negative,
  * which misses), since the float minimum takes three instructions where NaN must be looked after.
+ *
+ * The order in which triangles are met does not matter: boxes as far as the nearest hit are still entered, and
+ * of triangles at the same distance the first in scene order is the hit.
  */
 #include "shaders/intersection/triangle.glsl"
 #include "shaders/scene/triangles.glsl"
@@ -43,91 +47,144 @@ uint orderedMask(uint mask, uint octant) {
     return (octant & 4u) != 0u ? ((mask & 0x0fu) << 4) | ((mask >> 4) & 0x0fu) : mask;
 }
 
-/** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`
- * becomes its distance, `slot` its slot (-1: none). `source`: slot that the ray leaves and cannot meet again;
- * `target`: range of triangles (g) that it goes to and that do not stand in its way. A ray with nearest <= 0 does nothing. Returns the turns taken. */
-int traverse(vec3 origin, vec3 direction, const bool any, int source, ivec2 target, inout float nearest, out int slot) {
-    slot = -1;
-    const vec3 inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
-    const bvec3 negative = lessThan(inverse, vec3(0.0));
-    const uint octant = (negative.x ? 1u : 0u) | (negative.y ? 2u : 0u) | (negative.z ? 4u : 0u);
-    const RayShear ray = shearOf(origin, direction);
+/** A ray on its way through the tree. */
+struct Traversal {
+    RayShear ray;
+    vec3 inverse;
+    uint octant;         ///< bit per axis along which the direction is negative
+    uint group;          ///< siblings still to visit: first child << 8 | mask of those hit, bit s ^ octant for slot s
+    bool descending;     ///< `group` holds something
+    uint leafMask;       ///< triangles to test from `leafBase` on
+    uint leafBase;
+    uint nextMask;       ///< and those of the node after
+    uint nextBase;
+    int top;             ///< entries of traversalStack
+    int source;          ///< slot that the ray leaves and cannot meet again
+    ivec2 target;        ///< range of triangles (g) that the ray goes to and that do not stand in its way
+    float nearest;       ///< distance of the nearest hit so far, or the limit
+    int slot;            ///< of the nearest hit so far; -1: none
+    int g;               ///< its index in scene order
+    int steps;           ///< turns taken
+};
 
-    int stack[STACK_SIZE];
-    int top = 0;
-    // A group of siblings still to visit: first child << 8 | mask of those hit, bit s ^ octant for slot s.
-    uint group = 1u << octant;
-    bool descending = nearest > 0.0;
-    uint leafMask = 0u, leafBase = 0u, nextMask = 0u, nextBase = 0u;
-    int steps = 0;
-    while ((descending || (leafMask | nextMask) != 0u) && steps < MAX_TRAVERSAL_STEPS) {
-        ++steps;
-        if (descending && nextMask == 0u) {
-            const uint bit = uint(findLSB(group));
-            const uint rest = group & (group - 1u);
-            const int node = (int(group >> 8) + int(bit ^ octant)) * 5;
-            const uvec4 head = texelFetch(uNodes, node);
-            const uvec4 child = texelFetch(uNodes, node + 1);
-            const uvec4 x = texelFetch(uNodes, node + 2);
-            const uvec4 y = texelFetch(uNodes, node + 3);
-            const uvec4 z = texelFetch(uNodes, node + 4);
-            const vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * inverse;
-            const vec3 offset = (uintBitsToFloat(head.xyz) - origin) * inverse;
-            const vec3 slack = (abs(offset) + 255.0 * abs(step)) * 3.5762787e-7;
-            const vec3 nearOffset = offset - slack, farOffset = offset + slack;
-            const vec3 step8 = step * 0.00390625, step16 = step * 1.52587890625e-5;
-            const uvec2 nearX = negative.x ? x.zw : x.xy, farX = negative.x ? x.xy : x.zw;
-            const uvec2 nearY = negative.y ? y.zw : y.xy, farY = negative.y ? y.xy : y.zw;
-            const uvec2 nearZ = negative.z ? z.zw : z.xy, farZ = negative.z ? z.xy : z.zw;
-            const int limit = floatBitsToInt(nearest);
-            uint inner = 0u, leaves = 0u;
-            [[unroll]] for (int s = 0; s < 8; ++s) {
-                const int word = s >> 2, byte = s & 3;
-                const vec3 scale = byte == 1 ? step8 : (byte == 2 ? step16 : step);
-                const vec3 enter = vec3(scaledByte(nearX[word], byte), scaledByte(nearY[word], byte),
-                                        scaledByte(nearZ[word], byte)) * scale + nearOffset;
-                const vec3 leave = vec3(scaledByte(farX[word], byte), scaledByte(farY[word], byte),
-                                        scaledByte(farZ[word], byte)) * scale + farOffset;
-                const ivec3 e = floatBitsToInt(enter), l = floatBitsToInt(leave);
-                const bool hit = max(max(e.x, e.y), max(e.z, 0)) <= min(min(l.x, l.y), min(l.z, limit));
-                const uint leaf = (child[2 + word] >> (byte * 8)) & 0xffu;
-                inner |= hit ? (1u << s) : 0u;
-                leaves |= hit ? (leaf >> 5) << (leaf & 31u) : 0u;
-            }
-            inner = orderedMask(inner & (head.w >> 24), octant);
-            nextMask = leaves;
-            nextBase = child.y;
-            stack[top] = int(rest);
-            const bool more = (rest & 0xffu) != 0u, down = inner != 0u;
-            const uint popped = uint(stack[max(top - 1, 0)]);
-            group = down ? (child.x << 8) | inner : (more ? rest : popped);
-            descending = down || more || top > 0;
-            top += down ? (more ? 1 : 0) : (more ? 0 : -1);
-        }
-        if (leafMask == 0u) {
-            leafMask = nextMask;
-            leafBase = nextBase;
-            nextMask = 0u;
-        }
-        if (leafMask != 0u) {
-            const int candidate = int(leafBase) + findLSB(leafMask);
-            leafMask &= leafMask - 1u;
-            const uvec4 first = texelFetch(uTriangles, candidate * 3);
-            const vec3 a = sheared(ray, uintBitsToFloat(first.xyz));
-            const vec3 b = sheared(ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 1).xyz));
-            const vec3 c = sheared(ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 2).xyz));
-            float t;
-            bool hit = meetsTriangle(ray, a, b, c, nearest, t) && candidate != source;
-            if (any) hit = hit && (int(first.w) < target.x || int(first.w) > target.y);
-            nearest = hit ? t : nearest;
-            slot = hit ? candidate : slot;
-            if (any && hit) {
-                leafMask = 0u;
-                nextMask = 0u;
-                descending = false;
-            }
-        }
+/** Groups left behind on the way down. Not a member: drivers copy structures. */
+int traversalStack[STACK_SIZE];
+
+/** A ray that is to find the triangle nearest within (0, limit). One with limit <= 0 does nothing. */
+Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, float limit) {
+    Traversal t;
+    t.ray = shearOf(origin, direction);
+    t.inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
+    t.octant = (t.inverse.x < 0.0 ? 1u : 0u) | (t.inverse.y < 0.0 ? 2u : 0u) | (t.inverse.z < 0.0 ? 4u : 0u);
+    t.group = 1u << t.octant;
+    t.descending = limit > 0.0;
+    t.leafMask = 0u;
+    t.leafBase = 0u;
+    t.nextMask = 0u;
+    t.nextBase = 0u;
+    t.top = 0;
+    t.source = source;
+    t.target = target;
+    t.nearest = limit;
+    t.slot = -1;
+    t.g = -1;
+    t.steps = 0;
+    return t;
+}
+
+bool isBusy(Traversal t) {
+    return (t.descending || (t.leafMask | t.nextMask) != 0u) && t.steps < MAX_TRAVERSAL_STEPS;
+}
+
+/** Takes the next node off the tree: its leaves go to the queue, its children or the next group become t.group. */
+void visitNode(inout Traversal t) {
+    const uint bit = uint(findLSB(t.group));
+    const uint rest = t.group & (t.group - 1u);
+    const int node = (int(t.group >> 8) + int(bit ^ t.octant)) * 5;
+    const uvec4 head = texelFetch(uNodes, node);
+    const uvec4 child = texelFetch(uNodes, node + 1);
+    const uvec4 x = texelFetch(uNodes, node + 2);
+    const uvec4 y = texelFetch(uNodes, node + 3);
+    const uvec4 z = texelFetch(uNodes, node + 4);
+    const vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * t.inverse;
+    const vec3 offset = (uintBitsToFloat(head.xyz) - t.ray.origin) * t.inverse;
+    const vec3 slack = (abs(offset) + 255.0 * abs(step)) * 3.5762787e-7;
+    const vec3 nearOffset = offset - slack, farOffset = offset + slack;
+    const vec3 step8 = step * 0.00390625, step16 = step * 1.52587890625e-5;
+    const bvec3 negative = lessThan(t.inverse, vec3(0.0));
+    const uvec2 nearX = negative.x ? x.zw : x.xy, farX = negative.x ? x.xy : x.zw;
+    const uvec2 nearY = negative.y ? y.zw : y.xy, farY = negative.y ? y.xy : y.zw;
+    const uvec2 nearZ = negative.z ? z.zw : z.xy, farZ = negative.z ? z.xy : z.zw;
+    const int limit = floatBitsToInt(t.nearest);
+    uint inner = 0u, leaves = 0u;
+    [[unroll]] for (int s = 0; s < 8; ++s) {
+        const int word = s >> 2, byte = s & 3;
+        const vec3 scale = byte == 1 ? step8 : (byte == 2 ? step16 : step);
+        const vec3 enter = vec3(scaledByte(nearX[word], byte), scaledByte(nearY[word], byte),
+                                scaledByte(nearZ[word], byte)) * scale + nearOffset;
+        const vec3 leave = vec3(scaledByte(farX[word], byte), scaledByte(farY[word], byte),
+                                scaledByte(farZ[word], byte)) * scale + farOffset;
+        const ivec3 e = floatBitsToInt(enter), l = floatBitsToInt(leave);
+        const bool hit = max(max(e.x, e.y), max(e.z, 0)) <= min(min(l.x, l.y), min(l.z, limit));
+        const uint leaf = (child[2 + word] >> (byte * 8)) & 0xffu;
+        inner |= hit ? (1u << s) : 0u;
+        leaves |= hit ? (leaf >> 5) << (leaf & 31u) : 0u;
     }
-    return steps;
+    inner = orderedMask(inner & (head.w >> 24), t.octant);
+    t.nextMask = leaves;
+    t.nextBase = child.y;
+    traversalStack[t.top] = int(rest);
+    const bool more = (rest & 0xffu) != 0u, down = inner != 0u;
+    const uint popped = uint(traversalStack[max(t.top - 1, 0)]);
+    t.group = down ? (child.x << 8) | inner : (more ? rest : popped);
+    t.descending = down || more || t.top > 0;
+    t.top += down ? (more ? 1 : 0) : (more ? 0 : -1);
+}
+
+/** Tests the next triangle of the queue; where `any` is set, any hit ends the ray. */
+void visitTriangle(inout Traversal t, const bool any) {
+    const int candidate = int(t.leafBase) + findLSB(t.leafMask);
+    t.leafMask &= t.leafMask - 1u;
+    const uvec4 first = texelFetch(uTriangles, candidate * 3);
+    const vec3 a = sheared(t.ray, uintBitsToFloat(first.xyz));
+    const vec3 b = sheared(t.ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 1).xyz));
+    const vec3 c = sheared(t.ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 2).xyz));
+    const int g = int(first.w);
+    float distance;
+    bool hit = lineMeetsTriangle(t.ray, a, b, c, distance);
+    hit = hit && (isNearer(distance, t.nearest) || (!any && distance == t.nearest && g < t.g));
+    hit = hit && candidate != t.source;
+    if (any) hit = hit && (g < t.target.x || g > t.target.y);
+    t.nearest = hit ? distance : t.nearest;
+    t.slot = hit ? candidate : t.slot;
+    t.g = hit ? g : t.g;
+    if (any && hit) {
+        t.leafMask = 0u;
+        t.nextMask = 0u;
+        t.descending = false;
+    }
+}
+
+/** One turn: a node where the queue has room, and a triangle where one waits. */
+void takeTurn(inout Traversal t, const bool any) {
+    ++t.steps;
+    if (t.descending && t.nextMask == 0u) visitNode(t);
+    if (t.leafMask == 0u) {
+        t.leafMask = t.nextMask;
+        t.leafBase = t.nextBase;
+        t.nextMask = 0u;
+    }
+    if (t.leafMask != 0u) visitTriangle(t, any);
+}
+
+/** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`
+ * becomes its distance, `slot` its slot (-1: none). `source` and `target`: see Traversal. A ray with
+ * nearest <= 0 does nothing. Returns the turns taken. */
+int traverse(vec3 origin, vec3 direction, const bool any, int source, ivec2 target, inout float nearest, out int slot) {
+    Traversal t = beginTraversal(origin, direction, source, target, nearest);
+    while (isBusy(t)) takeTurn(t, any);
+    nearest = t.nearest;
+    slot = t.slot;
+    return t.steps;
 }
 #endif

@@ -63,19 +63,25 @@ bool isNearer(float t, float nearest) {
     return floatBitsToUint(t) - 1u < floatBitsToUint(nearest) - 1u;
 }
 
-/** Whether the ray meets the triangle of sheared corners at a distance in (0, nearest); `t` is it, in units of
- * the direction's length.
+/** Whether the ray's line meets the triangle of sheared corners; `t` is the distance, in units of the
+ * direction's length, and means something where isNearer() than some other.
  *
  * Signs of the edge functions are compared as integers. All at most 0 holds for 0 of either sign. All at least
  * 0 fails for -0; it comes about only where an edge ends in the ray, (+0, +0), and starts where x > 0 > y (or
  * the reverse), and its other triangle then has +0. Around a corner the triangle before the first such edge
  * has +0 on both sides, so that a closed fan is still never missed. A determinant of 0 makes t no number or
  * infinite, which is not nearer. */
-bool meetsTriangle(RayShear ray, vec3 a, vec3 b, vec3 c, float nearest, out float t) {
+bool lineMeetsTriangle(RayShear ray, vec3 a, vec3 b, vec3 c, out float t) {
     const vec3 e = edgeFunctions(a, b, c);
     const ivec3 bits = floatBitsToInt(e);
     const bool inside = min(min(bits.x, bits.y), bits.z) >= 0 || max(max(bits.x, bits.y), bits.z) <= 0;
     t = (e.x * a.z + e.y * b.z + e.z * c.z) * ray.inverse / (e.x + e.y + e.z);
+    return inside;
+}
+
+/** Whether the ray meets the triangle at a distance t in (0, nearest). */
+bool meetsTriangle(RayShear ray, vec3 a, vec3 b, vec3 c, float nearest, out float t) {
+    const bool inside = lineMeetsTriangle(ray, a, b, c, t);
     return inside && isNearer(t, nearest);
 }
 

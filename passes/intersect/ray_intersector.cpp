@@ -1,0 +1,71 @@
+#include "passes/intersect/ray_intersector.hpp"
+
+#include <heliograph_kernels/intersect.hpp>
+
+#include <cassert>
+
+namespace helio {
+namespace {
+
+constexpr std::uint32_t kGroupSize = 64;
+/** Rays of a workgroup: enough that lanes seldom wait for a run's last rays, few enough for even halves. */
+constexpr std::uint32_t kRaysPerGroup = 32 * kGroupSize;
+/** Loop turns a subgroup may start with, of the 65,535 that lavapipe runs; a ray may take 16,000. */
+constexpr std::uint32_t kBudget = 30000;
+
+}  // namespace
+
+RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQuestion question,
+                               std::size_t capacity)
+    : triangles_(makeBuffer(device, "intersect.triangles", packed.triangles)),
+      nodes_(makeBuffer(device, "intersect.nodes", packed.nodes)),
+      rays_(device, "intersect.rays", capacity * sizeof(Ray)),
+      hits_(device, "intersect.hits", capacity * sizeof(RayHit)),
+      cursors_(device, "intersect.cursors",
+               (capacity + kRaysPerGroup - 1) / kRaysPerGroup * kGroupSize * sizeof(std::uint32_t)),
+      counters_(device, "intersect.counters", sizeof(Counters)),
+      capacity_(capacity) {
+    assert(packed.nodeCount > 0 && capacity > 0 && capacity <= (1u << 23));
+    Graph graph(device);
+    const Buffer counters = graph.import(counters_);
+    graph
+        .compute("intersect", shaders::intersect,
+                 {.spec = {{"ANY", question == RayQuestion::Any},
+                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}}})
+        .reads({{"uTriangles", graph.import(triangles_)},
+                {"uNodes", graph.import(nodes_)},
+                {"uRays", graph.import(rays_)}})
+        .writes({{"uHits", graph.import(hits_)}})
+        .modifies({{"uCursors", graph.import(cursors_)}, {"uCounters", counters}})
+        .record([this](Commands& commands) {
+            commands.push(parameters_)
+                .dispatch((parameters_.count + parameters_.raysPerGroup - 1) / parameters_.raysPerGroup);
+        });
+    counted_ = graph.readback<Counters>(counters);
+    plan_ = graph.compile();
+}
+
+void RayIntersector::upload(std::span<const Ray> rays) {
+    assert(rays.size() <= capacity_);
+    rays_.upload(rays.data(), rays.size_bytes());
+    parameters_ = {std::uint32_t(rays.size()), kRaysPerGroup, kBudget, 1};
+}
+
+void RayIntersector::run() {
+    abandoned_ = 0;
+    parameters_.begin = 1;
+    for (Counters counters{1, 0}; counters.open > 0; parameters_.begin = 0) {
+        constexpr Counters zero{0, 0};
+        counters_.upload(&zero, sizeof zero);
+        counters = counted_.wait(plan_.execute()).at(0);
+        abandoned_ += counters.abandoned;
+    }
+}
+
+std::vector<RayHit> RayIntersector::hits() const {
+    std::vector<RayHit> result(parameters_.count);
+    hits_.download(result.data(), result.size() * sizeof(RayHit));
+    return result;
+}
+
+}  // namespace helio
