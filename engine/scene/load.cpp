@@ -1,5 +1,6 @@
 #include "engine/scene/gltf/gltf.hpp"
 #include "engine/scene/load_monitor.hpp"
+#include "engine/scene/mesh/mesh.hpp"
 #include "engine/scene/samples/sample.hpp"
 
 #include <heliograph/error.hpp>
@@ -8,8 +9,19 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <new>
 
 namespace helio {
+namespace {
+
+Scene loadMeshFile(Scene (*importer)(const ByteSource&, const std::string&, LoadMonitor&),
+                   const std::string& file, LoadMonitor& monitor) try {
+    return importer(FileSource(file), file, monitor);
+} catch (const std::bad_alloc&) {
+    throw InputError(file, "", "does not fit in memory", "give a smaller file");
+}
+
+}  // namespace
 
 Scene load(const std::string& source, const LoadOptions& options) {
     constexpr std::string_view samplePrefix = "sample:";
@@ -24,7 +36,9 @@ Scene load(const std::string& source, const LoadOptions& options) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
     if (extension == ".gltf" || extension == ".glb") return loadGltf(source, options, monitor);
-    throw InputError(source, "", "is no scene that can be read", "give a .gltf or .glb file, or sample:NAME");
+    if (extension == ".obj") return loadMeshFile(loadObj, source, monitor);
+    throw InputError(source, "", "is no scene that can be read",
+                     "give a .gltf, .glb or .obj file, or sample:NAME");
 }
 
 }  // namespace helio

@@ -283,7 +283,7 @@ TEST_F(Gltf, RefusesTextThatIsNoGltf) {
     refusal(folder_ / "missing.glb", "missing file");
     fs::create_directories(folder_ / "folder.gltf");
     refusal(folder_ / "folder.gltf", "folder");
-    refusal(write("scene.obj", "v 0 0 0"), "unknown extension");
+    refusal(write("scene.xyz", "v 0 0 0"), "unknown extension");
 }
 
 TEST_F(Gltf, RefusesEveryTruncation) {

@@ -1,0 +1,182 @@
+#include "engine/scene/mesh/mtl.hpp"
+
+#include "engine/image/read_file.hpp"
+#include "engine/scene/folder.hpp"
+#include "engine/scene/image_decoding.hpp"
+#include "engine/scene/mesh/attributes.hpp"
+#include "engine/scene/mesh/mtl_material.hpp"
+#include "engine/scene/mesh/text.hpp"
+#include "engine/scene/notes.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+namespace helio::mesh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/** Images that materials name, each read once; decoded together at the end. */
+class TextureFiles final : public TextureResolver {
+public:
+    TextureFiles(fs::path folder, Scene& scene) : folder_(std::move(folder)), scene_(scene) {}
+
+    int texture(const std::string& name, bool isClamped) override {
+        const auto [known, isNew] = textures_.try_emplace({name, isClamped}, -1);
+        if (!isNew) return known->second;
+        const int image = read(name);
+        if (image < 0) return -1;
+        Texture texture;
+        texture.name = name;
+        texture.image = image;
+        if (isClamped) texture.wrapU = texture.wrapV = Wrap::ClampToEdge;
+        scene_.textures.push_back(std::move(texture));
+        return known->second = int(scene_.textures.size()) - 1;
+    }
+
+    /** An image that cannot be decoded leaves its textures white, with a warning. */
+    void decode(LoadMonitor& monitor) {
+        for (DecodingResult& result : decodeImages(images_, monitor)) {
+            if (!result.fault.empty()) {
+                warn(scene_, fmt::format("texture {} {}; white is shown", shown(result.place), result.fault));
+                result.image.width = result.image.height = 1;
+                result.image.texels = std::vector<std::uint8_t>(4, 255);
+            }
+            scene_.images.push_back(std::move(result.image));
+        }
+    }
+
+private:
+    int read(const std::string& name) {
+        const auto [known, isNew] = files_.try_emplace(name, -1);
+        if (!isNew) return known->second;
+        const std::optional<fs::path> path = pathBelow(name);
+        if (!path) {
+            warn(scene_, fmt::format("texture {} leads out of the file's folder; left out", shown(name)));
+            return -1;
+        }
+        EncodedImage image;
+        image.place = image.name = name;
+        try {
+            image.owned = readFile(folder_ / *path);
+        } catch (const InputError& error) {
+            warn(scene_, fmt::format("texture {} {}; left out", shown(name), error.fault));
+            return -1;
+        }
+        image.bytes = image.owned;
+        const auto same = std::find_if(images_.begin(), images_.end(), [&](const EncodedImage& other) {
+            return std::ranges::equal(other.bytes, image.bytes);
+        });
+        known->second = int(same - images_.begin());
+        if (same == images_.end()) images_.push_back(std::move(image));
+        return known->second;
+    }
+
+    fs::path folder_;
+    Scene& scene_;
+    std::map<std::pair<std::string, bool>, int> textures_;
+    std::map<std::string, int> files_;
+    std::vector<EncodedImage> images_;
+};
+
+/** Finds the definitions of the names that are used; the first of each counts. */
+class Library {
+public:
+    Library(const std::string& file, const std::vector<std::string>& names, TextureResolver& textures,
+            Scene& scene)
+        : file_(file), textures_(textures), scene_(scene), found_(names.size()) {
+        for (std::size_t i = 0; i < names.size(); ++i) wanted_.emplace(names[i], i);
+    }
+
+    /** What follows mtllib: one file, its name perhaps with spaces, or several. */
+    void read(const std::string& libraries) {
+        if (readOne(libraries, false)) return;
+        std::string_view rest = libraries;
+        bool isFirst = true;
+        for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+            readOne(word, true);
+            isFirst = false;
+        }
+        if (isFirst) warn(scene_, "mtllib names no file");
+    }
+
+    std::optional<Material>& material(std::size_t index) { return found_[index]; }
+
+private:
+    bool readOne(std::string_view name, bool mayWarn) {
+        const auto complain = [&](const char* what) {
+            if (mayWarn)
+                warn(scene_, fmt::format("material file {} {}; its materials are white", shown(name), what));
+            return false;
+        };
+        const std::optional<fs::path> path = pathBelow(name);
+        if (!path) return complain("leads out of the file's folder");
+        const fs::path file = fs::path(file_).parent_path() / *path;
+        std::error_code error;
+        if (!fs::is_regular_file(file, error)) return complain("is not there");
+        const std::vector<std::byte> bytes = readFile(file);
+        parse(file.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        return true;
+    }
+
+    void parse(const std::string& file, std::string_view text) {
+        Lines lines(text);
+        std::string_view line;
+        MtlBlock block;
+        bool isWanted = false;
+        std::size_t target = 0;
+        const auto flush = [&] {
+            if (isWanted) found_[target] = materialOf(file, block, textures_, scene_);
+        };
+        while (lines.next(line)) {
+            std::string_view rest = line;
+            const std::string_view keyword = takeWord(rest);
+            if (keyword.empty() || keyword[0] == '#') continue;
+            if (keyword == "newmtl") {
+                flush();
+                block = {};
+                block.name = trimmed(rest);
+                const auto wanted = wanted_.find(block.name);
+                isWanted = wanted != wanted_.end() && !found_[wanted->second];
+                if (isWanted) target = wanted->second;
+            } else if (isWanted) {
+                block.lines.push_back({lines.number(), std::string(keyword), std::string(trimmed(rest))});
+            }
+        }
+        flush();
+    }
+
+    const std::string& file_;
+    TextureResolver& textures_;
+    Scene& scene_;
+    std::map<std::string, std::size_t> wanted_;
+    std::vector<std::optional<Material>> found_;
+};
+
+}  // namespace
+
+void loadMaterials(const std::string& file, const std::vector<std::string>& libraries,
+                   const std::vector<std::string>& names, bool hasColors, LoadMonitor& monitor,
+                   Scene& scene) {
+    TextureFiles textures(fs::path(file).parent_path(), scene);
+    Library library(file, names, textures, scene);
+    for (const std::string& name : libraries) library.read(name);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::optional<Material>& found = library.material(i);
+        if (!found) {
+            found = neutralMaterial(hasColors);
+            found->name = names[i];
+            if (!names[i].empty())
+                warn(scene, fmt::format("material {} is nowhere defined; white is shown", shown(names[i])));
+        }
+        scene.materials.push_back(std::move(*found));
+    }
+    textures.decode(monitor);
+}
+
+}  // namespace helio::mesh

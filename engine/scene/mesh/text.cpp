@@ -1,0 +1,99 @@
+#include "engine/scene/mesh/text.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace helio::mesh {
+namespace {
+
+constexpr bool isBlank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r';
+}
+
+std::string_view withoutPlus(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    return word;
+}
+
+}  // namespace
+
+std::string_view Lines::physicalLine() {
+    const std::size_t feed = rest_.find('\n');
+    std::string_view line = rest_.substr(0, feed);
+    std::size_t used = feed == std::string_view::npos ? rest_.size() : feed + 1;
+    const std::size_t carriage = line.find('\r');
+    if (carriage != std::string_view::npos) {
+        if (carriage + 1 < line.size()) used = carriage + 1;  // it ends a line by itself
+        line = line.substr(0, carriage);
+    }
+    rest_.remove_prefix(used);
+    ++passed_;
+    return line;
+}
+
+bool Lines::next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    number_ = passed_ + 1;
+    line = physicalLine();
+    if (!line.ends_with('\\')) return true;
+    joined_.clear();
+    while (line.ends_with('\\')) {
+        joined_.append(line.substr(0, line.size() - 1)).push_back(' ');
+        if (rest_.empty()) break;
+        line = physicalLine();
+        if (!line.ends_with('\\')) joined_.append(line);
+    }
+    line = joined_;
+    return true;
+}
+
+std::string_view takeWord(std::string_view& line) {
+    std::size_t begin = 0;
+    while (begin < line.size() && isBlank(line[begin])) ++begin;
+    std::size_t end = begin;
+    while (end < line.size() && !isBlank(line[end])) ++end;
+    const std::string_view word = line.substr(begin, end - begin);
+    line.remove_prefix(end);
+    return word;
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::optional<float> parseReal(std::string_view word) {
+    word = withoutPlus(word);
+    float value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [at, error] = std::from_chars(word.data(), end, value);
+    if (at != end || word.empty()) return std::nullopt;
+    if (error == std::errc::result_out_of_range) {
+        // Too small, or too large: only what is too small has a negative exponent or begins with zeros.
+        double wide = 0;
+        const auto [wideAt, wideError] = std::from_chars(word.data(), end, wide);
+        if (wideError == std::errc()) return std::abs(wide) < 1 ? std::optional(0.0f) : std::nullopt;
+        return word.find("e-") != word.npos || word.find("E-") != word.npos ? std::optional(0.0f)
+                                                                            : std::nullopt;
+    }
+    if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+std::optional<std::int64_t> parseInteger(std::string_view word) {
+    word = withoutPlus(word);
+    std::int64_t value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [at, error] = std::from_chars(word.data(), end, value);
+    if (word.empty() || at != end || error != std::errc()) return std::nullopt;
+    return value;
+}
+
+std::string shown(std::string_view text) {
+    std::string result = "'";
+    for (const char c : text.substr(0, 40)) result.push_back(c >= ' ' && c <= '~' ? c : '?');
+    return result + (text.size() > 40 ? "...'" : "'");
+}
+
+}  // namespace helio::mesh
