@@ -13,7 +13,7 @@ struct RasterPush {
 };
 static_assert(sizeof(RasterPush) == 128);
 
-inline constexpr std::uint32_t kRasterOrthographic = 1, kRasterCullBack = 2;
+inline constexpr std::uint32_t kRasterCullBack = 2;
 
 inline RasterPush makeRasterPush(const RasterView& view, std::uint32_t flags, std::uint32_t first,
                                  std::uint32_t count) {
@@ -25,7 +25,7 @@ inline RasterPush makeRasterPush(const RasterView& view, std::uint32_t flags, st
             view.width | view.height << 16,
             first,
             count,
-            flags | (view.orthographic ? kRasterOrthographic : 0u)};
+            flags};
 }
 
 }  // namespace helio

@@ -68,6 +68,9 @@ void main() {
     if (lane == 0) {
         state.tileGroups[0] = uint(tiles.x);
         state.tileGroups[1] = uint(tiles.y);
-        state.tileGroups[2] = (sums[0] + SEGMENT - 1u) / SEGMENT;
+        state.tileGroups[2] = 1u;
+        state.moreGroups[0] = uint(tiles.x);
+        state.moreGroups[1] = uint(tiles.y);
+        state.moreGroups[2] = max((sums[0] + SEGMENT - 1u) / SEGMENT, 1u) - 1u;
     }
 }

@@ -5,6 +5,8 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #include "shaders/raster/view.glsl"
 #include "shaders/scene/triangles.glsl"
 #include "shaders/raster/triangle.glsl"
@@ -15,6 +17,7 @@ layout(set = 0, binding = 1, std430) buffer uVisibility { uint64_t visibility[];
 layout(set = 0, binding = 2, std430) buffer uState { RasterState state; };
 layout(set = 0, binding = 3, std430) buffer uCounters { uint64_t counters[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer uLarge { uint large[]; };
+layout(set = 0, binding = 6, rg32ui) uniform uimageBuffer uVisibilityTexels;  ///< the same, to read
 layout(set = 0, binding = 5, std430) writeonly buffer uClipped { uint clipped[]; };
 
 // A small triangle covers at most SMALL x SMALL pixels' centres; SMALL_EXTENT keeps its edge functions in 32 bits.
@@ -23,6 +26,11 @@ const int SMALL_EXTENT = 8192;
 const uint PER_THREAD = 4u;
 
 shared uint packed[4];
+
+bool beyondGuardBand(HomogeneousVertex v) {
+    double reach = GUARD_BAND * v.w;
+    return v.x > reach || v.x < -reach || v.y > reach || v.y < -reach;
+}
 
 void main() {
     uint lane = gl_LocalInvocationIndex;
@@ -41,10 +49,10 @@ void main() {
         HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
 
         // Each test is linear in homogeneous pixels, hence right for vertices behind the eye too.
-        bool outside = max(a.x, max(b.x, c.x)) < 0.0LF || max(a.y, max(b.y, c.y)) < 0.0LF ||
+        double least = lesser(a.near, lesser(b.near, c.near)), most = greater(a.near, greater(b.near, c.near));
+        bool outside = (a.x < 0.0LF && b.x < 0.0LF && c.x < 0.0LF) || (a.y < 0.0LF && b.y < 0.0LF && c.y < 0.0LF) ||
                        (a.x > width * a.w && b.x > width * b.w && c.x > width * c.w) ||
-                       (a.y > height * a.w && b.y > height * b.w && c.y > height * c.w) ||
-                       max(a.near, max(b.near, c.near)) < 0.0LF;
+                       (a.y > height * a.w && b.y > height * b.w && c.y > height * c.w) || most < 0.0LF;
         outsideCount += uint(valid && outside);
         valid = valid && !outside;
 
@@ -53,9 +61,7 @@ void main() {
         backCount += uint(valid && back);
         valid = valid && !back;
 
-        double reach = max(max(max(abs(a.x), abs(a.y)) - GUARD_BAND * a.w, max(abs(b.x), abs(b.y)) - GUARD_BAND * b.w),
-                           max(abs(c.x), abs(c.y)) - GUARD_BAND * c.w);
-        bool clip = valid && (reach > 0.0LF || min(a.near, min(b.near, c.near)) < 0.0LF);
+        bool clip = valid && (beyondGuardBand(a) || beyondGuardBand(b) || beyondGuardBand(c) || least < 0.0LF);
         clippedCount += uint(clip);
         if (clip) clipped[atomicAdd(state.clippedCount, 1u)] = t;
         valid = valid && !clip;
@@ -86,30 +92,52 @@ void main() {
         ivec3 down = ivec3(q.x - p.x, r.x - q.x, p.x - r.x);
         int low = floatBitsToInt(plane.low), high = floatBitsToInt(plane.high);
         uint id = uint(source.g);
-        int pixels = valid ? cells.x * cells.y : 0;
-        visited += uint(pixels);
-        int x = bounds.x, y = bounds.y;
-        ivec3 rowStep = down - right * (cells.x - 1);
-        for (int i = 0; i < pixels; ++i) {
-            if (min(e.x, min(e.y, e.z)) >= 0) {
-                int depth =
-                    depthBits(plane.a, plane.b * (double(y) + 0.5LF) + plane.c, double(x) + 0.5LF, low, high);
-                atomicMax(visibility[y * size.x + x], visibilityKey(depth, id));
-                ++covered;
+        visited += valid ? uint(cells.x * cells.y) : 0u;
+        // First which pixels are covered, row by row, then those alone: an atomic's code costs far more than a test,
+        // even where it is masked out. Bit 8 y + x.
+        int width_ = valid ? cells.x : 0, rows = valid ? cells.y : 0;
+        uint inRow = (1u << width_) - 1u;
+        uint64_t coverage = 0ul;
+        for (int y = 0; y < rows; ++y) {
+            uint outsideRow = 0u;
+            ivec3 edge = e;
+            [[unroll]] for (int x = 0; x < SMALL; ++x) {
+                outsideRow |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
+                edge += right;
             }
-            bool wrap = x == bounds.z;
-            e += wrap ? rowStep : right;
-            x = wrap ? bounds.x : x + 1;
-            y += int(wrap);
+            coverage |= uint64_t(~outsideRow & inRow) << (8 * y);
+            e += down;
+        }
+        uvec2 mask = unpackUint2x32(coverage);
+        covered += uint(bitCount(mask.x) + bitCount(mask.y));
+        int origin = bounds.y * size.x + bounds.x;
+        double cornerX = double(bounds.x) + 0.5LF, cornerY = double(bounds.y) + 0.5LF;
+        for (; (mask.x | mask.y) != 0u;) {
+            bool upper = mask.x == 0u;
+            uint word = upper ? mask.y : mask.x;
+            int at = findLSB(word), x = at & 7, y = (at >> 3) + (upper ? 4 : 0);
+            word &= word - 1u;
+            mask = upper ? uvec2(0u, word) : uvec2(word, mask.y);
+            int depth = depthBits(plane.a, plane.b * (cornerY + double(y)) + plane.c, cornerX + double(x), low, high);
+            uint64_t key = visibilityKey(depth, id);
+            // Keys only grow: what is hidden already costs no atomic. And plain loads of several invocations miss the
+            // cache together, which atomics do one after the other.
+            int index = origin + y * size.x + x;
+            uvec2 seen = imageLoad(uVisibilityTexels, index).xy;
+            if (key > packUint2x32(seen)) atomicMax(visibility[index], key);
         }
     }
 
     // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 256
     // triangles, which 10 bits hold, and tests at most 2^14 pixels a lane in 2^6 lanes.
-    atomicAdd(packed[0], outsideCount | backCount << 10 | emptyCount << 20);
-    atomicAdd(packed[1], smallCount | largeCount << 10 | clippedCount << 20);
-    atomicAdd(packed[2], visited);
-    atomicAdd(packed[3], covered);
+    uvec4 sums = subgroupAdd(uvec4(outsideCount | backCount << 10 | emptyCount << 20,
+                                   smallCount | largeCount << 10 | clippedCount << 20, visited, covered));
+    if (subgroupElect()) {
+        atomicAdd(packed[0], sums.x);
+        atomicAdd(packed[1], sums.y);
+        atomicAdd(packed[2], sums.z);
+        atomicAdd(packed[3], sums.w);
+    }
     barrier();
     if (lane == 0u) {
         uint begin = gl_WorkGroupID.x * (64u * PER_THREAD);

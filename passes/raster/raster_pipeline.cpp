@@ -18,8 +18,9 @@ namespace {
 constexpr int kLevels = 6;
 constexpr std::uint32_t kClipParts = 6;
 constexpr std::uint32_t kRecordBytes = 64;
-constexpr std::uint64_t kStateBytes = 64;
-constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52;
+constexpr std::uint64_t kStateBytes = 76;
+constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52,
+                        kMoreGroups = 64;
 constexpr std::uint32_t kSetupTriangles = 256;  // of a workgroup of set-up
 
 std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
@@ -34,7 +35,7 @@ std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
 }  // namespace
 
 void requireRasterCapabilities(const DeviceInfo& device) {
-    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"})
+    for (const char* needed : kRasterCapabilities)
         if (!device.has(needed))
             throw DeviceError(fmt::format(
                 "{} lacks {}, which the rasterizer needs; use the path pipeline or another device",
@@ -44,8 +45,8 @@ void requireRasterCapabilities(const DeviceInfo& device) {
 RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& options)
     : options_(options), maxStorageBufferRange_(device.info().maxStorageBufferRange) {
     assert(options.batch > 0);
-    assert(options.stripRows == 0 || options.stripRows == 8 || options.stripRows == 16);
-    if (options_.stripRows == 0) options_.stripRows = device.info().subgroupSize <= 16 ? 16 : 8;
+    assert(options.stripRows == 0 || options.stripRows == 4 || options.stripRows == 8);
+    if (options_.stripRows == 0) options_.stripRows = device.info().subgroupSize <= 16 ? 8 : 4;
     requireRasterCapabilities(device.info());
     // A record is 64 bytes and all of a batch must be in reach of one binding; indirect dispatches have at
     // most 65,535 workgroups of 64.
@@ -88,16 +89,24 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
     const Buffer starts = graph.buffer("raster.starts", {(cells + 1) * 4});
     const Buffer entry = graph.buffer("raster.entries", {entries * 4});
 
+    const bool orthographic = view->orthographic;
+    const ComputeOptions projection{.spec = {{"ORTHOGRAPHIC", orthographic}}};
     graph.fill("raster.clearCounts", counts, 0);
     for (std::uint32_t first = 0; first < triangles.count; first += batch) {
         const std::uint32_t count = std::min(batch, triangles.count - first);
         const std::uint32_t flags = options_.cullBackFaces ? kRasterCullBack : 0u;
-        const auto push = [view, flags, first, count] { return makeRasterPush(*view, flags, first, count); };
+        const auto push = [view, flags, first, count, orthographic] {
+            assert(view->orthographic == orthographic);
+            return makeRasterPush(*view, flags, first, count);
+        };
 
         graph.fill("raster.clearState", state, 0);
-        graph.compute("raster.setup", shaders::rasterSetup)
+        graph.compute("raster.setup", shaders::rasterSetup, projection)
             .reads({{"uTriangles", triangles.buffer}})
-            .modifies({{"uVisibility", output.visibility}, {"uState", state}, {"uCounters", output.counters}})
+            .modifies({{"uVisibility", output.visibility},
+                       {"uVisibilityTexels", output.visibility, Format::RG32UI},
+                       {"uState", state},
+                       {"uCounters", output.counters}})
             .overwrites({{"uLarge", large}, {"uClipped", clipped}})
             .record([push, count](Commands& c) {
                 c.push(push()).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
@@ -105,13 +114,13 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
         graph.compute("raster.plan", shaders::rasterPlan)
             .modifies({{"uState", state}})
             .record([entries](Commands& c) { c.push(std::uint32_t(entries)).dispatch(1); });
-        graph.compute("raster.large", shaders::rasterLarge)
+        graph.compute("raster.large", shaders::rasterLarge, projection)
             .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uLarge", large}})
             .overwrites({{"uRecords", record}})
             .modifies({{"uCounts", counts}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kLargeGroups); });
-        graph.compute("raster.clip", shaders::rasterClip)
+        graph.compute("raster.clip", shaders::rasterClip, projection)
             .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uClipped", clipped}})
             .writes({{"uRecords", record}})
             .modifies({{"uCounts", counts}, {"uCounters", output.counters}})
@@ -128,11 +137,20 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
             .overwrites({{"uEntries", entry}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kFillGroups); });
-        graph.compute("raster.tile", options_.stripRows == 16 ? shaders::rasterTileTall : shaders::rasterTile)
-            .reads({{"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts}})
-            .modifies({{"uVisibility", output.visibility}, {"uCounters", output.counters}})
+        const std::vector<Binding> lists = {
+            {"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts, Format::R32UI}};
+        graph.compute("raster.tile", options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile)
+            .reads(lists)
+            .modifies({{"uVisibility", output.visibility},
+                       {"uVisibilityTexels", output.visibility, Format::RG32UI},
+                       {"uCounters", output.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
+        graph.compute("raster.tileMore", shaders::rasterTileMore)
+            .reads(lists)
+            .modifies({{"uVisibility", output.visibility}, {"uCounters", output.counters}})
+            .indirect(state)
+            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kMoreGroups); });
     }
     return output;
 }

@@ -32,7 +32,7 @@ struct RasterOptions {
     std::uint32_t batch = 1u << 18;
     /** Most entries that the lists of tiles hold at a time; results do not depend on it. */
     std::uint64_t entries = 1u << 24;
-    /** Pixels of a column that an invocation of the tile kernel owns, 8 or 16; 0 chooses by the device's
+    /** Rows of two columns that an invocation of the tile kernel owns, 4 or 8; 0 chooses by the device's
      * subgroups. Results do not depend on it. */
     std::uint32_t stripRows = 0;
 };
@@ -62,7 +62,10 @@ struct RasterOutput {
     Buffer counters;
 };
 
-/** Throws DeviceError where the device lacks 64-bit integers, 64-bit buffer atomics or doubles. */
+/** What the rasterizer needs of a device beyond what every device has. */
+inline constexpr std::array kRasterCapabilities = {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64",
+                                                   "subgroupArithmetic", "subgroupShuffle"};
+/** Throws DeviceError where the device lacks one of kRasterCapabilities. */
 void requireRasterCapabilities(const DeviceInfo& device);
 
 class RasterPipeline {
@@ -71,7 +74,7 @@ public:
     explicit RasterPipeline(const Device& device, const RasterOptions& options = {});
 
     /** Declares the passes. `view` is read at every execution: its camera may change between two, its size
-     * may not. Throws InputError for a size that the device cannot hold. */
+     * and kind of projection may not. Throws InputError for a size that the device cannot hold. */
     RasterOutput declare(Graph& graph, const RasterTriangles& triangles,
                          std::shared_ptr<const RasterView> view) const;
 

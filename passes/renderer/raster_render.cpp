@@ -111,7 +111,7 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
     const bool isTiny = view.camera.perspective && farthest < double(view.camera.znear);
     const RasterView rasterView =
         makeRasterView(view.transform, view.camera, job.options.size, isTiny ? 1e-6 * farthest : 0, farthest);
-    if (!scene.raster || !scene.raster->fits(job.options)) {
+    if (!scene.raster || !scene.raster->fits(rasterView, job.options)) {
         scene.raster.reset();
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);
     }

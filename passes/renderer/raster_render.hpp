@@ -23,8 +23,9 @@ public:
     RasterSession(const RasterSession&) = delete;
     RasterSession& operator=(const RasterSession&) = delete;
 
-    bool fits(const RenderOptions& options) const {
-        return options.size == size_ && options.cullBackFaces == cull_;
+    bool fits(const RasterView& view, const RenderOptions& options) const {
+        return options.size == size_ && options.cullBackFaces == cull_ &&
+               view.orthographic == view_->orthographic;
     }
     /** One sample at every pixel's centre. */
     void render(const RasterView& view, RenderJob& job);

@@ -60,6 +60,7 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
                                            "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
     spec["FILTER_MIPS"] = mips_.needed();
     spec["SCENE_ORDER"] = sceneOrder;
+    spec["ORTHOGRAPHIC"] = view->orthographic;
     SpecConstants firstSpec = spec;
     firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
 

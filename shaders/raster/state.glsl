@@ -21,7 +21,8 @@ struct RasterState {
     uint largeGroups[3];  // workgroups of the indirect dispatches
     uint clipGroups[3];
     uint fillGroups[3];
-    uint tileGroups[3];
+    uint tileGroups[3];  // for the first segment of every tile
+    uint moreGroups[3];  // for the others, most often none
 };
 
 // Clipping a triangle by five planes leaves at most eight corners: a fan of at most six triangles.

@@ -23,9 +23,8 @@ PixelGrid pixelGrid() {
     grid.right = yw * scale;
     grid.down = wx * scale;
     dvec3 forward = xy * scale;
-    bool orthographic = (push.flags & RASTER_ORTHOGRAPHIC) != 0u;
     dvec2 half_ = 0.5LF * dvec2(imageSizePixels());
-    grid.origin = orthographic ? -(half_.x * grid.right + half_.y * grid.down) : forward;
+    grid.origin = ORTHOGRAPHIC ? -(half_.x * grid.right + half_.y * grid.down) : forward;
     grid.axis = forward;
     return grid;
 }
@@ -45,14 +44,13 @@ struct Surface {
 /// denominator are linear on the screen, which gives the derivatives.
 Surface surfaceAt(Triangle source, ivec2 pixel) {
     PixelGrid grid = pixelGrid();
-    bool orthographic = (push.flags & RASTER_ORTHOGRAPHIC) != 0u;
     dvec3 eye = dvec3(push.rowX.w, push.rowY.w, push.rowW.w);
     dvec3 v0 = dvec3(source.v0) - eye, v1 = dvec3(source.v1) - eye, v2 = dvec3(source.v2) - eye;
     dvec3 e1 = v1 - v0, e2 = v2 - v0;
     dvec2 centre = dvec2(pixel) + 0.5LF;
     dvec3 at = grid.origin + centre.x * grid.right + centre.y * grid.down;
-    dvec3 r = orthographic ? grid.axis : at;
-    dvec3 o = orthographic ? at : dvec3(0.0LF);
+    dvec3 r = ORTHOGRAPHIC ? grid.axis : at;
+    dvec3 o = ORTHOGRAPHIC ? at : dvec3(0.0LF);
     dvec3 normal = cross(e1, e2);
     dvec3 T = o - v0;
     dvec3 a1 = cross(e2, T), a2 = cross(T, e1);
@@ -62,7 +60,7 @@ Surface surfaceAt(Triangle source, ivec2 pixel) {
 
     Surface surface;
     dvec2 db1, db2;
-    if (orthographic) {
+    if (ORTHOGRAPHIC) {
         db1 = dvec2(dot(r, cross(e2, grid.right)), dot(r, cross(e2, grid.down))) * inverse;
         db2 = dvec2(dot(r, cross(grid.right, e1)), dot(r, cross(grid.down, e1))) * inverse;
     } else {

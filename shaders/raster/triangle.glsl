@@ -53,6 +53,10 @@ int edgeAtSmall(ivec2 p, ivec2 q, ivec2 pixel) {
     return (d.x * s.y - d.y * s.x + edgeBias(p, q)) >> 8;
 }
 
+// Of finite numbers: min() and max() cost more where they must mind NaN.
+double lesser(double a, double b) { return a < b ? a : b; }
+double greater(double a, double b) { return a > b ? a : b; }
+
 /// Depth over the screen: a x + b y + c at pixel coordinates x, y, kept within the vertices' range (snapping can
 /// move an edge past the true triangle). `facing` is positive where the front (counter-clockwise) is seen.
 struct DepthPlane {
@@ -66,13 +70,12 @@ struct DepthPlane {
 /// (a, b, c) = Z N / (N.P0) with N = (P1-P0) x (P2-P0): no projection, no division by a w.
 DepthPlane depthPlane(HomogeneousVertex p0, HomogeneousVertex p1, HomogeneousVertex p2) {
     DepthPlane plane;
-    bool orthographic = (push.flags & RASTER_ORTHOGRAPHIC) != 0u;
-    dvec3 e1 = dvec3(p1.x - p0.x, p1.y - p0.y, orthographic ? p1.z - p0.z : p1.w - p0.w);
-    dvec3 e2 = dvec3(p2.x - p0.x, p2.y - p0.y, orthographic ? p2.z - p0.z : p2.w - p0.w);
+    dvec3 e1 = dvec3(p1.x - p0.x, p1.y - p0.y, ORTHOGRAPHIC ? p1.z - p0.z : p1.w - p0.w);
+    dvec3 e2 = dvec3(p2.x - p0.x, p2.y - p0.y, ORTHOGRAPHIC ? p2.z - p0.z : p2.w - p0.w);
     precise double nx = e1.y * e2.z - e1.z * e2.y;
     precise double ny = e1.z * e2.x - e1.x * e2.z;
     precise double nz = e1.x * e2.y - e1.y * e2.x;
-    if (orthographic) {
+    if (ORTHOGRAPHIC) {
         plane.a = -nx / nz;
         plane.b = -ny / nz;
         precise double c = p0.z - plane.a * p0.x - plane.b * p0.y;
@@ -87,12 +90,12 @@ DepthPlane depthPlane(HomogeneousVertex p0, HomogeneousVertex p1, HomogeneousVer
         plane.facing = -volume;
     }
     // Behind the near plane depth is cut at 1.
-    float d0 = p0.near < 0.0LF ? 1.0 : float(p0.z / p0.w);
-    float d1 = p1.near < 0.0LF ? 1.0 : float(p1.z / p1.w);
-    float d2 = p2.near < 0.0LF ? 1.0 : float(p2.z / p2.w);
+    double least = lesser(p0.near, lesser(p1.near, p2.near)), most = greater(p0.near, greater(p1.near, p2.near));
+    double farthest = ORTHOGRAPHIC ? 1.0LF - most : push.depthOffset / (most + push.depthOffset);
+    double nearest = ORTHOGRAPHIC ? 1.0LF - least : push.depthOffset / (least + push.depthOffset);
     const float smallest = 1.17549435e-38;  // a hit is never 0, which means none
-    plane.low = max(min(d0, min(d1, d2)), smallest);
-    plane.high = max(max(d0, max(d1, d2)), smallest);
+    plane.low = max(most < 0.0LF ? 1.0 : float(farthest), smallest);
+    plane.high = max(least < 0.0LF ? 1.0 : float(nearest), smallest);
     return plane;
 }
 

@@ -8,6 +8,7 @@
 //                 with an infinite far plane, 1 at the near plane;
 //   orthographic: X = rowX.d + width/2, Y = rowY.d + height/2, w = 1, Z = depthOffset + depthSlope v.
 // Pixel coordinates are X/w, Y/w: x to the right, y down, centres at one half.
+layout(constant_id = 122) const bool ORTHOGRAPHIC = false;  ///< the kind of projection
 layout(push_constant, std430) uniform RasterPush {
     dvec4 rowX;          // xyz, and the eye's x
     dvec4 rowY;          // xyz, and the eye's y
@@ -20,7 +21,6 @@ layout(push_constant, std430) uniform RasterPush {
     uint flags;          // RASTER_*
 } push;
 
-const uint RASTER_ORTHOGRAPHIC = 1u;
 const uint RASTER_CULL_BACK = 2u;
 
 ivec2 imageSizePixels() { return ivec2(int(push.size & 0xffffu), int(push.size >> 16)); }
@@ -39,7 +39,7 @@ HomogeneousVertex projectVertex(vec3 position) {
     precise double y = push.rowY.x * dx + push.rowY.y * dy + push.rowY.z * dz;
     precise double v = push.rowW.x * dx + push.rowW.y * dy + push.rowW.z * dz;
     HomogeneousVertex vertex;
-    if ((push.flags & RASTER_ORTHOGRAPHIC) != 0u) {
+    if (ORTHOGRAPHIC) {
         ivec2 size = imageSizePixels();
         precise double z = push.depthOffset + push.depthSlope * v;
         precise double near = 1.0LF - z;

@@ -267,7 +267,7 @@ TEST(RasterOrder, AnyOrderGivesTheSameBits) {
     }
     RasterRunner whole(kWidth, kHeight, std::uint32_t(list.size()));
     RasterRunner pieces(kWidth, kHeight, std::uint32_t(list.size()),
-                        {.batch = 700, .entries = 1, .stripRows = 8});
+                        {.batch = 700, .entries = 1, .stripRows = 4});
     const RasterResult first = whole.run(view, list);
     EXPECT_EQ(compare(first, view, list, 4e-7).different, 0u);
     EXPECT_EQ(pieces.run(view, list).keys, first.keys) << "batches, coarse lists, short strips";

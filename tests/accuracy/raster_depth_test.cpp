@@ -205,7 +205,7 @@ TEST(RasterDepth, OrthographicViews) {
     camera.znear = 0.5f;
     camera.zfar = 100;
     const RasterView view = makeRasterView(glm::dmat4(1.0), camera, {kWidth, kHeight}, 0.5, 0.0);
-    RasterRunner runner(kWidth, kHeight, 300);
+    RasterRunner runner(kWidth, kHeight, 300, {}, {}, true);
     Random random(22);
     std::vector<RasterTriangle> list;
     for (std::uint32_t i = 0; i < 300; ++i) {
@@ -229,7 +229,7 @@ TEST(RasterDepth, OrthographicViews) {
 
 TEST(RasterCapabilities, ADeviceWithoutThemIsNamedWithWhatItLacks) {
     EXPECT_NO_THROW(requireRasterCapabilities(device().info()));
-    for (const char* needed : {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64"}) {
+    for (const char* needed : kRasterCapabilities) {
         DeviceInfo info = device().info();
         for (Capability& capability : info.capabilities)
             if (capability.name == needed) capability.present = false;

@@ -28,12 +28,14 @@ struct RasterResult {
 class RasterRunner {
 public:
     RasterRunner(std::uint32_t width, std::uint32_t height, std::uint32_t capacity,
-                 const RasterOptions& options = {}, const CompileOptions& compile = {})
+                 const RasterOptions& options = {}, const CompileOptions& compile = {},
+                 bool orthographic = false)
         : view_(std::make_shared<RasterView>()),
           capacity_(capacity),
           buffer_(device(), "triangles", std::uint64_t(capacity) * sizeof(RasterTriangle)) {
         view_->width = width;
         view_->height = height;
+        view_->orthographic = orthographic;
         Graph graph(device());
         const RasterOutput output =
             RasterPipeline(device(), options).declare(graph, {graph.import(buffer_), capacity}, view_);

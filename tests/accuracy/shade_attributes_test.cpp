@@ -128,7 +128,7 @@ TEST(ShadeAttributes, DerivativesAndLevelOfATiltedPlane) {
             const RasterOutput raster = RasterPipeline(device()).declare(graph, {source, 2}, view);
             const Buffer result = graph.buffer("result", {160 * 120 * 16}),
                          levels = graph.buffer("level", {160 * 120 * 4});
-            graph.compute("derivatives", kernel)
+            graph.compute("derivatives", kernel, {.spec = {{"ORTHOGRAPHIC", orthographic}}})
                 .reads({{"uVisibility", raster.visibility},
                         {"uTriangles", source},
                         {"uUv", graph.import(uvBuffer)}})
