@@ -1,0 +1,137 @@
+/** @file
+ * The compute rasterizer against Vulkan's graphics pipeline on the same device: same triangles, same
+ * visibility output, interleaved runs, medians of the device's own timestamps, clears included.
+ * `bench_raster [--rounds N] [--passes] [FILE...]` prints a Markdown table; files are drawn after the
+ * built-in scenes, --passes adds the times of the compute rasterizer's passes.
+ */
+#include "passes/raster/raster_pipeline.hpp"
+#include "tests/bench/raster/graphics_rasterizer.hpp"
+#include "tests/bench/raster/scenes.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/error.hpp>
+#include <heliograph/graph.hpp>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace helio::bench {
+namespace {
+
+constexpr std::array<std::uint32_t, 2> kSize = {1280, 720};
+
+/** User and system time of the process: of a CPU device's threads too, and steadier than the clock on a
+ * machine with other work. */
+double cpuSeconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double median(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+struct ComputeRasterizer {
+    ComputeRasterizer(Device& device, const BenchScene& scene)
+        : triangles(makeBuffer(device, "bench.triangles", scene.triangles)) {
+        const auto view = std::make_shared<const RasterView>(scene.view);
+        const auto count = std::uint32_t(scene.triangles.size() / 3);
+        Graph graph(device);
+        const RasterOutput output =
+            RasterPipeline(device).declare(graph, {graph.import(triangles), count}, view);
+        keys = graph.readback<std::uint64_t>(output.visibility);
+        plan = graph.compile({.executionsInFlight = 1});
+    }
+    /** Seconds on the device without bringing the result back. */
+    double draw() {
+        last = plan.execute();
+        double sum = 0;
+        for (const PassTiming& pass : plan.timings(last))
+            if (!pass.name.starts_with("readback")) sum += pass.milliseconds;
+        return sum * 1e-3;
+    }
+    DeviceBuffer triangles;
+    Plan plan;
+    Readback<std::uint64_t> keys;
+    Execution last;
+};
+
+void measure(Device& device, const BenchScene& scene, int rounds, bool details) {
+    GraphicsRasterizer graphics(device, scene.view, scene.triangles);
+    ComputeRasterizer compute(device, scene);
+    graphics.draw();  // the driver compiles at the first draw
+    compute.draw();
+    std::vector<double> graphicsTimes, computeTimes, graphicsCpu, computeCpu;
+    for (int round = 0; round < rounds; ++round) {
+        const double start = cpuSeconds();
+        graphicsTimes.push_back(graphics.draw());
+        const double middle = cpuSeconds();
+        computeTimes.push_back(compute.draw());
+        graphicsCpu.push_back(middle - start);
+        computeCpu.push_back(cpuSeconds() - middle);
+    }
+    const std::vector<std::uint32_t> ids = graphics.ids();
+    const std::vector<std::uint64_t> keys = compute.keys.wait(compute.last);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        different += visibleTriangle(keys[i]) != std::int32_t(ids[i]);
+    const double g = median(graphicsTimes), c = median(computeTimes);
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.3f} % |\n", scene.name,
+               scene.triangles.size() / 3, g * 1e3, c * 1e3, g / c, median(graphicsCpu) / median(computeCpu),
+               100.0 * double(different) / double(ids.size()));
+    if (details)
+        for (const PassTiming& pass : compute.plan.timings(compute.last))
+            if (pass.milliseconds > 0.02) fmt::print("    {:24} {:8.3f}\n", pass.name, pass.milliseconds);
+    std::fflush(stdout);
+}
+
+int run(int argc, char** argv) {
+    int rounds = 15;
+    bool details = false;
+    std::vector<std::string> files;
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        if (argument == "--passes") {
+            details = true;
+        } else if (argument == "--rounds" && i + 1 < argc) {
+            rounds = std::max(1, std::atoi(argv[++i]));
+        } else {
+            files.push_back(argument);
+        }
+    }
+    Device device;
+    fmt::print("{}, {}x{}, medians of {}\n\n", device.info().name, kSize[0], kSize[1], rounds);
+    fmt::print(
+        "| scene | triangles | graphics, ms | compute, ms | graphics / compute | the same in CPU time | ids "
+        "that differ |\n");
+    fmt::print("|---|---|---|---|---|---|---|\n");
+    measure(device, scattered("about 1 pixel", 1000000, 1.6, kSize), rounds, details);
+    measure(device, scattered("4 pixels", 200000, 4, kSize), rounds, details);
+    measure(device, scattered("30x30 pixels", 10000, 30, kSize), rounds, details);
+    measure(device, scattered("150x150 pixels", 2000, 150, kSize), rounds, details);
+    measure(device, fullScreen("full screen", 8, kSize), rounds, details);
+    for (const std::string& file : files) measure(device, fromFile(file, kSize), rounds, details);
+    return 0;
+}
+
+}  // namespace
+}  // namespace helio::bench
+
+int main(int argc, char** argv) {
+    try {
+        return helio::bench::run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bench_raster: {}\n", error.what());
+        return 1;
+    }
+}
