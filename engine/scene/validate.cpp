@@ -143,6 +143,19 @@ private:
         use(place, "specularColorTexture", material.specularColorTexture);
         checkVolume(material, place);
         checkCoats(material, place);
+        if (material.scattering) checkScattering(*material.scattering, place);
+    }
+
+    void checkScattering(const Scattering& scattering, const std::string& place) const {
+        unit(place, "scattering.roughness", scattering.roughness);
+        for (int c = 0; c < 2; ++c) unit(place, "scattering.alpha", scattering.alpha[c]);
+        for (int c = 0; c < 3; ++c) {
+            number(place, "scattering.n", scattering.n[c], 0.01f, 100);
+            number(place, "scattering.k", scattering.k[c], 0, 100);
+        }
+        number(place, "scattering.exponent", scattering.exponent, 0, 1e6f);
+        if (scattering.multipleScattering && scattering.beckmann)
+            refuse(place, "asks for multiple scattering between Beckmann's facets", "take GGX facets");
     }
 
     void checkVolume(const Material& material, const std::string& place) const {

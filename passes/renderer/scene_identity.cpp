@@ -67,6 +67,14 @@ void addAll(Fingerprint& f, const Fields&... fields) {
     (add(f, fields), ...);
 }
 
+void add(Fingerprint& f, const std::optional<Scattering>& scattering) {
+    f.value(scattering.has_value());
+    if (!scattering) return;
+    const auto& [model, roughness, alpha, beckmann, schlick, n, k, exponent, multipleScattering] =
+        *scattering;
+    addAll(f, model, roughness, alpha, beckmann, schlick, n, k, exponent, multipleScattering);
+}
+
 void add(Fingerprint& f, const Material& m) {
     const auto& [name, baseColor, baseColorTexture, metallic, roughness, metallicRoughnessTexture,
                  normalTexture, normalScale, occlusionTexture, occlusionStrength, emission, emissiveTexture,
@@ -77,7 +85,7 @@ void add(Fingerprint& f, const Material& m) {
                  sheenRoughnessTexture, anisotropyStrength, anisotropyRotation, anisotropyTexture,
                  iridescence, iridescenceTexture, iridescenceIor, iridescenceThicknessMinimum,
                  iridescenceThicknessMaximum, iridescenceThicknessTexture, dispersion, alphaMode, alphaCutoff,
-                 doubleSided, unlit, unsupported] = m;
+                 doubleSided, unlit, scattering, unsupported] = m;
     addAll(f, baseColor, baseColorTexture, metallic, roughness, metallicRoughnessTexture, normalTexture,
            normalScale, occlusionTexture, occlusionStrength, emission, emissiveTexture, specular,
            specularTexture, specularColor, specularColorTexture, ior, transmission, transmissionTexture,
@@ -86,7 +94,7 @@ void add(Fingerprint& f, const Material& m) {
            sheenColor, sheenColorTexture, sheenRoughness, sheenRoughnessTexture, anisotropyStrength,
            anisotropyRotation, anisotropyTexture, iridescence, iridescenceTexture, iridescenceIor,
            iridescenceThicknessMinimum, iridescenceThicknessMaximum, iridescenceThicknessTexture, dispersion,
-           alphaMode, alphaCutoff, doubleSided, unlit, unsupported);
+           alphaMode, alphaCutoff, doubleSided, unlit, scattering, unsupported);
 }
 
 /** Of a mesh as it stands: variants and deformations are chosen before. */

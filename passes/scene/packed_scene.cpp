@@ -47,6 +47,7 @@ void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, Pack
         skipIf(m.sheenColor != glm::vec3(0.0f), "sheen");
         skipIf(m.anisotropyStrength > 0.0f, "anisotropy");
         skipIf(m.iridescence > 0.0f, "iridescence");
+        skipIf(m.scattering.has_value(), "scattering models");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
     packed.skipped.assign(named.begin(), named.end());

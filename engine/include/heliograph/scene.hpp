@@ -54,6 +54,30 @@ struct TextureUse {
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
+/** A scattering model that glTF's parameters cannot say. It takes the place of all that a material says about
+ * scattering; base colour (a tint where the model says nothing else), normal map, emission and alpha stay. */
+struct Scattering {
+    enum class Model : std::uint8_t {
+        OrenNayar,       ///< rough diffuse: `roughness` 0..1, in Fujii's energy-conserving form
+        Mirror,          ///< reflects all light, times the base colour
+        Dielectric,      ///< interface to the index n.r, by Fresnel; light goes through by Snell's law
+        ThinDielectric,  ///< a pane of the index n.r: light goes through in line, times the base colour
+        Conductor,       ///< metal of index n + i k, times the base colour
+        Phong,           ///< cos^exponent about the mirrored direction, times the base colour
+        BlinnPhong       ///< cos^exponent of the half vector, times the base colour
+    };
+    Model model = Model::OrenNayar;
+    float roughness = 0;    ///< OrenNayar
+    glm::vec2 alpha{0.0f};  ///< width of microfacets along tangent and bitangent; 0: smooth
+    bool beckmann = false;  ///< Beckmann's facets, else GGX
+    bool schlick = false;   ///< Dielectric: Schlick's approximation of Fresnel's equations
+    glm::vec3 n{1.5f};      ///< refractive index per channel
+    glm::vec3 k{0.0f};      ///< extinction per channel
+    float exponent = 0;     ///< Phong, BlinnPhong
+    /** GGX alone: adds the light of several reflections between facets, which the model loses otherwise. */
+    bool multipleScattering = false;
+};
+
 /** The glTF 2.0 metallic-roughness material. Defaults are glTF's. */
 struct Material {
     std::string name;
@@ -103,6 +127,7 @@ struct Material {
     float alphaCutoff = 0.5f;
     bool doubleSided = false;  ///< emits from both faces
     bool unlit = false;
+    std::optional<Scattering> scattering;  ///< instead of glTF's
     /** What the file asked for that the model cannot hold yet, e.g. "KHR_materials_sheen". */
     std::vector<std::string> unsupported;
 };
