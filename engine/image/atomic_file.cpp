@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -51,6 +52,12 @@ bool isSameFile(const struct stat& status, int descriptor) {
 }
 
 }  // namespace
+
+std::string lowerCaseExtension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
 
 std::filesystem::path followLinks(const std::filesystem::path& file) {
     std::filesystem::path result = std::filesystem::absolute(file);

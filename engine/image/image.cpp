@@ -11,18 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 
 namespace helio {
 namespace {
-
-std::string lowerCaseExtension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
 
 std::array<std::size_t, 3> colorChannels(const std::string& file, const ImageF& image) {
     std::array<std::size_t, 3> channels{};

@@ -4,11 +4,9 @@
 #include "engine/scene/samples/sample.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/scene.hpp>
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <new>
 
 namespace helio {
@@ -32,9 +30,7 @@ Scene load(const std::string& source, const LoadOptions& options) {
     }
     LoadMonitor monitor(options);
     monitor.report("file", 0);
-    std::string extension = std::filesystem::path(source).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string extension = lowerCaseExtension(source);
     if (extension == ".gltf" || extension == ".glb") return loadGltf(source, options, monitor);
     if (extension == ".obj") return loadMeshFile(loadObj, source, monitor);
     throw InputError(source, "", "is no scene that can be read",

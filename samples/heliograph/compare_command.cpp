@@ -3,6 +3,7 @@
 #include "output_files.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/file.hpp>
 #include <heliograph/image.hpp>
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -89,8 +89,7 @@ enum class Encoding : std::uint8_t { Unknown, Linear, Srgb };
 
 /** How a file of this type holds its values. */
 Encoding encodingOf(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lowerCaseExtension(file);
     if (extension == ".exr" || extension == ".hdr") return Encoding::Linear;
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") return Encoding::Srgb;
     return Encoding::Unknown;

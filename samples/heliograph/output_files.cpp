@@ -6,8 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include <cctype>
-
 namespace helio::cli {
 namespace {
 
@@ -35,20 +33,14 @@ bool isSpecial(const std::filesystem::path& file) {
            !std::filesystem::is_directory(status);
 }
 
-std::string lowerExtension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
-
 }  // namespace
 
 bool holdsEveryChannel(const std::filesystem::path& file) {
-    return lowerExtension(file) == ".exr";
+    return lowerCaseExtension(file) == ".exr";
 }
 
 void checkImageOutput(const std::string& option, const std::filesystem::path& file) {
-    const std::string extension = lowerExtension(file);
+    const std::string extension = lowerCaseExtension(file);
     if (extension != ".exr" && extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
         throw CLI::ValidationError(
             option, file.string() + ": unknown image type '" + extension + "', use .exr, .png or .jpg");

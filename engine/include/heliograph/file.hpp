@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace helio {
@@ -24,5 +25,8 @@ void writeTextFile(const std::filesystem::path& file, std::string_view text);
 
 /** The file a symbolic link leads to, there or not; the file itself where it is no link. Absolute. */
 std::filesystem::path followLinks(const std::filesystem::path& file);
+
+/** A file name's extension in lower case with its dot: ".png" of "A.PNG"; empty where there is none. */
+std::string lowerCaseExtension(const std::filesystem::path& file);
 
 }  // namespace helio

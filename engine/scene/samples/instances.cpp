@@ -77,14 +77,7 @@ Scene makeInstances() {
             scene.nodes[std::size_t(parent)].children.push_back(int(scene.nodes.size()) - 1);
         }
     }
-    PunctualLight sun;
-    sun.name = "sun";
-    sun.type = PunctualLight::Type::Directional;
-    sun.intensity = {3.4f, 3.0f, 2.5f};
-    scene.lights.push_back(sun);
-    Node sunNode = lookAtNode("sun", {-30, 26, 14}, {0, 0, 0});
-    sunNode.light = 0;
-    addRoot(scene, sunNode);
+    addSun(scene, {3.4f, 3.0f, 2.5f}, {-30, 26, 14});
     scene.environment = Environment{glm::vec3(0.42f, 0.52f, 0.70f), -1};
     addCamera(scene, {0, 30, 62}, {0, 0, 3}, 40);
     return scene;

@@ -154,6 +154,17 @@ Node lookAtNode(std::string name, glm::vec3 eye, glm::vec3 target) {
     return node;
 }
 
+void addSun(Scene& scene, glm::vec3 irradiance, glm::vec3 towards) {
+    PunctualLight sun;
+    sun.name = "sun";
+    sun.type = PunctualLight::Type::Directional;
+    sun.intensity = irradiance;
+    scene.lights.push_back(sun);
+    Node node = lookAtNode("sun", towards, {0, 0, 0});
+    node.light = int(scene.lights.size()) - 1;
+    addRoot(scene, std::move(node));
+}
+
 void addCamera(Scene& scene, glm::vec3 eye, glm::vec3 target, double yfovDegrees) {
     Camera camera;
     camera.name = "camera";

@@ -25,6 +25,8 @@ int addRoot(Scene& scene, Node node);
 int addRoot(Scene& scene, std::string name, int mesh);
 /** A root node at `eye` whose -Z looks at `target`, with +Y up. */
 Node lookAtNode(std::string name, glm::vec3 eye, glm::vec3 target);
+/** A directional light of this irradiance (W/m^2) that comes from where `towards` points. */
+void addSun(Scene& scene, glm::vec3 irradiance, glm::vec3 towards);
 /** A perspective camera; `yfov` in degrees. */
 void addCamera(Scene& scene, glm::vec3 eye, glm::vec3 target, double yfovDegrees);
 

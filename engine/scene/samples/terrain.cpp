@@ -266,14 +266,7 @@ Scene makeTerrain() {
         addMesh(scene, "lake",
                 quadShape({-lake, 0, lake}, {2 * lake, 0, 0}, {0, 0, -2 * lake}, addMaterial(scene, water))));
 
-    PunctualLight sun;
-    sun.name = "sun";
-    sun.type = PunctualLight::Type::Directional;
-    sun.intensity = {4.2f, 3.5f, 2.6f};
-    scene.lights.push_back(sun);
-    Node sunNode = lookAtNode("sun", {-0.85f, 0.5f, 0.35f}, {0, 0, 0});
-    sunNode.light = 0;
-    addRoot(scene, sunNode);
+    addSun(scene, {4.2f, 3.5f, 2.6f}, {-0.85f, 0.5f, 0.35f});
     scene.environment = Environment{glm::vec3(0.33f, 0.45f, 0.68f), -1};
     addCamera(scene, {-190, 170, 830}, {10, 34, 0}, 36);
     return scene;
