@@ -361,13 +361,12 @@ Bvh buildBvh(std::span<const glm::vec3> positions, const BvhOptions& options) {
             const BinaryNode& child = binary[index];
             quantise(child.box, s, node);
             if (child.isLeaf()) {
-                const std::uint32_t offset = std::uint32_t(result.order.size()) - node.firstTriangle;
-                node.leaf[std::size_t(s)] = std::uint8_t(((1u << child.count) - 1u) << 5 | offset);
+                node.slots |= ((1u << child.count) - 1u) << (8 + 3 * s);
                 for (std::uint32_t i = 0; i < child.count; ++i)
                     result.order.push_back(builder.order()[child.first + i]);
                 if (rootArea > 0) result.cost += child.box.halfArea() / rootArea * double(child.count);
             } else {
-                node.innerMask = std::uint8_t(node.innerMask | 1u << s);
+                node.slots |= 1u << s;
                 queue.push_back({index, node.firstChild + std::uint32_t(s), item.level + 1});
             }
         }

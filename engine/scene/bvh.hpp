@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,13 +24,25 @@ namespace helio {
 struct BvhNode {
     std::array<float, 3> origin;           ///< lower corner of the node's box
     std::array<std::uint8_t, 3> exponent;  ///< biased by 127, per axis
-    std::uint8_t innerMask;                ///< bit s: child s is a node, at firstChild + s
-    std::uint32_t firstChild;              ///< of a block of eight nodes, some of them unused
-    std::uint32_t firstTriangle;           ///< place in Bvh::order of this node's first leaf triangle
-    /** Leaf s: unary count (1, 3, 7 for 1, 2, 3 triangles) << 5 | offset from firstTriangle; else 0. */
-    std::array<std::uint8_t, 8> leaf;
+    std::uint8_t unusedByte;
+    std::uint32_t firstChild;     ///< of a block of eight nodes, some of them unused
+    std::uint32_t firstTriangle;  ///< place in Bvh::order of this node's first leaf triangle
+    /** Bit s: child s is a node, at firstChild + s. Bits 8 + 3 s on: child s is a leaf of as many triangles
+     * as bits are set, from the lowest on; triangles lie in the order of their bits. */
+    std::uint32_t slots;
+    std::uint32_t unusedWord;
     /** Quantised planes per axis: 8 lower, then 8 upper. A slot without a child has lower 255, upper 0. */
     std::array<std::array<std::uint8_t, 16>, 3> planes;
+
+    bool isInner(int slot) const { return (slots >> slot & 1u) != 0; }
+    /** Triangles of a leaf; 0 for an inner child and for a slot without a child. */
+    std::uint32_t triangleCount(int slot) const {
+        return std::uint32_t(std::popcount(slots >> (8 + 3 * slot) & 7u));
+    }
+    /** Place in Bvh::order of a leaf's first triangle. */
+    std::uint32_t triangleBegin(int slot) const {
+        return firstTriangle + std::uint32_t(std::popcount((slots >> 8) & ((1u << 3 * slot) - 1u)));
+    }
 };
 static_assert(sizeof(BvhNode) == 80);
 

@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_shuffle_relative : require
 /** @file
  * Rays from a buffer, hits into a buffer. Each subgroup has a run of rays of its own; a lane whose ray is done
  * takes the run's next one, so that lanes stay busy however long single rays take. What a ray meets does not
@@ -35,7 +35,24 @@ layout(set = 0, binding = 3, std430) buffer Counters {
 } uCounters;
 
 layout(constant_id = 0) const bool ANY = false;    ///< any hit within the limit will do
-layout(constant_id = 1) const uint TURNS = 8u;     ///< between two looks for lanes that are done
+/** Lanes that wait before they are given rays; 0 takes a quarter of them. */
+layout(constant_id = 1) const uint PATIENCE = 0u;
+
+/** Sum over the subgroup. Shuffles, since lavapipe's reductions are loops over lanes. All lanes are active. */
+uint sumOfLanes(uint value) {
+    [[unroll]] for (uint d = 1u; d < gl_SubgroupSize; d <<= 1) value += subgroupShuffleXor(value, d);
+    return value;
+}
+
+/** Sum over the lanes before this one. */
+uint sumBefore(uint value) {
+    uint sum = value;
+    [[unroll]] for (uint d = 1u; d < gl_SubgroupSize; d <<= 1) {
+        const uint left = subgroupShuffle(sum, gl_SubgroupInvocationID - min(d, gl_SubgroupInvocationID));
+        sum += gl_SubgroupInvocationID >= d ? left : 0u;
+    }
+    return sum - value;
+}
 
 void main() {
     const uint group = interleavedGroup();
@@ -48,6 +65,8 @@ void main() {
     Traversal t = beginTraversal(vec3(0.0), vec3(1.0), -1, ivec2(1, 0), 0.0);
     uint index = ~0u;
     uint spent = 0u, abandoned = 0u;
+    // Uniform over the subgroup: all lanes stay active, so that all can be counted.
+    uint waiting = gl_SubgroupSize;
     bool working = true;
     while (working) {
         const bool idle = !isBusy(t);
@@ -55,19 +74,24 @@ void main() {
             uHits.hits[index] = uvec2(floatBitsToUint(t.nearest), uint(t.slot));
             abandoned += t.steps >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
         }
-        const uvec4 waiting = subgroupBallot(idle);
-        const uint mine = next + subgroupBallotExclusiveBitCount(waiting);
-        const bool takes = idle && spent < parameters.budget && mine < end;
-        next = spent < parameters.budget ? min(next + subgroupBallotBitCount(waiting), max(end, next)) : next;
+        const bool open = spent < parameters.budget;
+        const uint mine = next + sumBefore(idle ? 1u : 0u);
+        const bool takes = idle && open && mine < end;
+        next = open ? min(next + waiting, max(end, next)) : next;
         index = takes ? mine : (idle ? ~0u : index);
         if (takes) {
             const uvec4 from = texelFetch(uRays, int(mine) * 2), towards = texelFetch(uRays, int(mine) * 2 + 1);
             t = beginTraversal(uintBitsToFloat(from.xyz), uintBitsToFloat(towards.xyz), int(towards.w), ivec2(1, 0),
                                uintBitsToFloat(from.w));
         }
-        for (uint turn = 0u; turn < TURNS && isBusy(t); ++turn) takeTurn(t, ANY);
-        spent += TURNS + 1u;
-        working = subgroupAny(index != ~0u);
+        const uint patience = open && next < end ? (PATIENCE > 0u ? PATIENCE : gl_SubgroupSize / 4u) : gl_SubgroupSize;
+        do {
+            takeTurn(t, ANY);
+            ++spent;
+            waiting = sumOfLanes(isBusy(t) ? 0u : 1u);
+        } while (waiting < patience);
+        ++spent;
+        working = waiting < gl_SubgroupSize || (open && next < end) || sumOfLanes(index != ~0u ? 1u : 0u) > 0u;
     }
     if (subgroupElect()) {
         uCursors.taken[place] = next;

@@ -54,11 +54,12 @@ struct Traversal {
     uint octant;         ///< bit per axis along which the direction is negative
     uint group;          ///< siblings still to visit: first child << 8 | mask of those hit, bit s ^ octant for slot s
     bool descending;     ///< `group` holds something
-    uint leafMask;       ///< triangles to test from `leafBase` on
+    uint leafMask;       ///< triangles to test, of those of a node (`leafAll`), which lie from `leafBase` on
+    uint leafAll;
     uint leafBase;
     uint nextMask;       ///< and those of the node after
+    uint nextAll;
     uint nextBase;
-    int top;             ///< entries of traversalStack
     int source;          ///< slot that the ray leaves and cannot meet again
     ivec2 target;        ///< range of triangles (g) that the ray goes to and that do not stand in its way
     float nearest;       ///< distance of the nearest hit so far, or the limit
@@ -67,8 +68,39 @@ struct Traversal {
     int steps;           ///< turns taken
 };
 
-/** Groups left behind on the way down. Not a member: drivers copy structures. */
-int traversalStack[STACK_SIZE];
+/** Groups left behind on the way down, the last one first where all are moved. Not members of Traversal:
+ * drivers copy structures. */
+uint traversalStack[STACK_SIZE];
+int traversalTop;
+/** Whether entries are moved rather than addressed. Few stay in registers; lavapipe writes to an address lane
+ * by lane, with branches that it mispredicts. */
+const bool MOVE_STACK = STACK_SIZE <= 12;
+
+void clearStack() {
+    traversalTop = 0;
+    if (MOVE_STACK) {
+        [[unroll]] for (int i = 0; i < STACK_SIZE; ++i) traversalStack[i] = 0u;
+    }
+}
+
+/** The last entry, 0 for none; then takes it off, or puts `group` on top, or neither. */
+uint exchangeOnStack(uint group, bool push, bool pop) {
+    if (MOVE_STACK) {
+        const uint last = traversalStack[0];
+        uint before = group;
+        [[unroll]] for (int i = 0; i < STACK_SIZE; ++i) {
+            const uint here = traversalStack[i];
+            const uint after = i + 1 < STACK_SIZE ? traversalStack[min(i + 1, STACK_SIZE - 1)] : 0u;
+            traversalStack[i] = push ? before : (pop ? after : here);
+            before = here;
+        }
+        return last;
+    }
+    traversalStack[traversalTop] = group;
+    const uint last = traversalTop > 0 ? traversalStack[max(traversalTop - 1, 0)] : 0u;
+    traversalTop += push ? 1 : (pop && traversalTop > 0 ? -1 : 0);
+    return last;
+}
 
 /** A ray that is to find the triangle nearest within (0, limit). One with limit <= 0 does nothing. */
 Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, float limit) {
@@ -79,10 +111,12 @@ Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, 
     t.group = 1u << t.octant;
     t.descending = limit > 0.0;
     t.leafMask = 0u;
+    t.leafAll = 0u;
     t.leafBase = 0u;
     t.nextMask = 0u;
+    t.nextAll = 0u;
     t.nextBase = 0u;
-    t.top = 0;
+    clearStack();
     t.source = source;
     t.target = target;
     t.nearest = limit;
@@ -116,7 +150,7 @@ void visitNode(inout Traversal t) {
     const uvec2 nearY = negative.y ? y.zw : y.xy, farY = negative.y ? y.xy : y.zw;
     const uvec2 nearZ = negative.z ? z.zw : z.xy, farZ = negative.z ? z.xy : z.zw;
     const int limit = floatBitsToInt(t.nearest);
-    uint inner = 0u, leaves = 0u;
+    uint hits = 0u;
     [[unroll]] for (int s = 0; s < 8; ++s) {
         const int word = s >> 2, byte = s & 3;
         const vec3 scale = byte == 1 ? step8 : (byte == 2 ? step16 : step);
@@ -126,24 +160,23 @@ void visitNode(inout Traversal t) {
                                 scaledByte(farZ[word], byte)) * scale + farOffset;
         const ivec3 e = floatBitsToInt(enter), l = floatBitsToInt(leave);
         const bool hit = max(max(e.x, e.y), max(e.z, 0)) <= min(min(l.x, l.y), min(l.z, limit));
-        const uint leaf = (child[2 + word] >> (byte * 8)) & 0xffu;
-        inner |= hit ? (1u << s) : 0u;
-        leaves |= hit ? (leaf >> 5) << (leaf & 31u) : 0u;
+        hits |= hit ? (1u << s) | (7u << (8 + 3 * s)) : 0u;
     }
-    inner = orderedMask(inner & (head.w >> 24), t.octant);
-    t.nextMask = leaves;
+    hits &= child.z;
+    const uint inner = orderedMask(hits & 0xffu, t.octant);
+    t.nextMask = hits >> 8;
+    t.nextAll = child.z >> 8;
     t.nextBase = child.y;
-    traversalStack[t.top] = int(rest);
     const bool more = (rest & 0xffu) != 0u, down = inner != 0u;
-    const uint popped = uint(traversalStack[max(t.top - 1, 0)]);
-    t.group = down ? (child.x << 8) | inner : (more ? rest : popped);
-    t.descending = down || more || t.top > 0;
-    t.top += down ? (more ? 1 : 0) : (more ? 0 : -1);
+    const uint last = exchangeOnStack(rest, down && more, !down && !more);
+    t.group = down ? (child.x << 8) | inner : (more ? rest : last);
+    t.descending = t.group != 0u;
 }
 
 /** Tests the next triangle of the queue; where `any` is set, any hit ends the ray. */
 void visitTriangle(inout Traversal t, const bool any) {
-    const int candidate = int(t.leafBase) + findLSB(t.leafMask);
+    const uint lower = (t.leafMask & -t.leafMask) - 1u;
+    const int candidate = int(t.leafBase) + bitCount(t.leafAll & lower);
     t.leafMask &= t.leafMask - 1u;
     const uvec4 first = texelFetch(uTriangles, candidate * 3);
     const vec3 a = sheared(t.ray, uintBitsToFloat(first.xyz));
@@ -171,6 +204,7 @@ void takeTurn(inout Traversal t, const bool any) {
     if (t.descending && t.nextMask == 0u) visitNode(t);
     if (t.leafMask == 0u) {
         t.leafMask = t.nextMask;
+        t.leafAll = t.nextAll;
         t.leafBase = t.nextBase;
         t.nextMask = 0u;
     }

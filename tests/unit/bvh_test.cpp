@@ -41,18 +41,16 @@ void visit(const Bvh& tree, const Positions& positions, std::uint32_t index, std
     const BvhNode& node = tree.nodes[index];
     ++walk.nodes;
     for (int s = 0; s < 8; ++s) {
-        const std::uint8_t leaf = node.leaf[std::size_t(s)];
+        const std::uint32_t count = node.triangleCount(s);
         std::vector<BvhBox> inner = bounds;
         inner.push_back(childBox(node, s));
-        if ((node.innerMask >> s & 1) != 0) {
-            ASSERT_EQ(leaf, 0);
+        if (node.isInner(s)) {
+            ASSERT_EQ(count, 0);
             visit(tree, positions, node.firstChild + std::uint32_t(s), inner, walk);
-        } else if (leaf != 0) {
-            const int count = leaf >> 5 == 7 ? 3 : leaf >> 5 == 3 ? 2 : 1;
-            ASSERT_EQ((1 << count) - 1, leaf >> 5);
-            for (int k = 0; k < count; ++k) {
-                const std::uint32_t triangle =
-                    tree.order[node.firstTriangle + (leaf & 31u) + std::uint32_t(k)];
+        } else {
+            ASSERT_EQ((1u << count) - 1u, node.slots >> (8 + 3 * s) & 7u);
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const std::uint32_t triangle = tree.order[node.triangleBegin(s) + k];
                 ++walk.seen[triangle];
                 for (std::size_t c = 0; c < 3; ++c)
                     for (const BvhBox& box : inner) {
@@ -93,8 +91,7 @@ double closest(const Bvh& tree, const Positions& positions, std::uint32_t index,
                const glm::dvec3& d, double nearest) {
     const BvhNode& node = tree.nodes[index];
     for (int s = 0; s < 8; ++s) {
-        const std::uint8_t leaf = node.leaf[std::size_t(s)];
-        if ((node.innerMask >> s & 1) == 0 && leaf == 0) continue;
+        if (!node.isInner(s) && node.triangleCount(s) == 0) continue;
         const BvhBox box = childBox(node, s);
         double enter = 0, leave = nearest;
         for (int axis = 0; axis < 3; ++axis) {
@@ -108,12 +105,12 @@ double closest(const Bvh& tree, const Positions& positions, std::uint32_t index,
             leave = std::min(leave, std::max(t0, t1));
         }
         if (enter > leave * (1 + 1e-12)) continue;
-        if (leaf == 0) {
+        if (node.isInner(s)) {
             nearest = closest(tree, positions, node.firstChild + std::uint32_t(s), o, d, nearest);
             continue;
         }
-        for (int k = 0; k < (leaf >> 5 == 7 ? 3 : leaf >> 5 == 3 ? 2 : 1); ++k) {
-            const std::uint32_t triangle = tree.order[node.firstTriangle + (leaf & 31u) + std::uint32_t(k)];
+        for (std::uint32_t k = 0; k < node.triangleCount(s); ++k) {
+            const std::uint32_t triangle = tree.order[node.triangleBegin(s) + k];
             nearest = std::min(nearest, hitDistance(o, d, &positions[triangle * 3]));
         }
     }
