@@ -12,9 +12,13 @@
 namespace helio {
 namespace {
 
-Scene loadMeshFile(Scene (*importer)(const ByteSource&, const std::string&, LoadMonitor&),
-                   const std::string& file, LoadMonitor& monitor) try {
-    return importer(FileSource(file), file, monitor);
+using MeshImporter = Scene (*)(const ByteSource&, const std::string&, LoadMonitor&);
+
+Scene loadMeshFile(MeshImporter importer, const std::string& file, const LoadOptions& options,
+                   LoadMonitor& monitor) try {
+    Scene scene = importer(FileSource(file), file, monitor);
+    if (!options.variant.empty()) chooseVariant(scene, options.variant);
+    return scene;
 } catch (const std::bad_alloc&) {
     throw InputError(file, "", "does not fit in memory", "give a smaller file");
 }
@@ -32,9 +36,11 @@ Scene load(const std::string& source, const LoadOptions& options) {
     monitor.report("file", 0);
     const std::string extension = lowerCaseExtension(source);
     if (extension == ".gltf" || extension == ".glb") return loadGltf(source, options, monitor);
-    if (extension == ".obj") return loadMeshFile(loadObj, source, monitor);
+    if (extension == ".obj") return loadMeshFile(loadObj, source, options, monitor);
+    if (extension == ".ply") return loadMeshFile(loadPly, source, options, monitor);
+    if (extension == ".stl") return loadMeshFile(loadStl, source, options, monitor);
     throw InputError(source, "", "is no scene that can be read",
-                     "give a .gltf, .glb or .obj file, or sample:NAME");
+                     "give a .gltf, .glb, .obj, .ply or .stl file, or sample:NAME");
 }
 
 }  // namespace helio

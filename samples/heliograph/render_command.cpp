@@ -245,7 +245,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
     RenderOptions& options = arguments->options;
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     command
-        ->add_option("SCENE", arguments->scene, "A .gltf or .glb file, or sample:NAME (see heliograph info)")
+        ->add_option("SCENE", arguments->scene,
+                     "A .gltf, .glb, .obj, .ply or .stl file, or sample:NAME (see heliograph info)")
         ->required();
     command
         ->add_option("-o,--output", arguments->outputs,

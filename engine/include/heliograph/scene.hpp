@@ -318,8 +318,8 @@ struct LoadOptions {
     bool everyVariant = false;
 };
 
-/** Loads a file by its extension (.gltf, .glb) or "sample:NAME". Throws InputError, or Cancelled where
- * LoadOptions::progress asked for it. */
+/** Loads a file by its extension (.gltf, .glb, .obj, .ply, .stl) or "sample:NAME". Throws InputError, or
+ * Cancelled where LoadOptions::progress asked for it. */
 Scene load(const std::string& source, const LoadOptions& options = {});
 /** Gives every primitive the material that it has under one of Scene::variants. Throws InputError that lists
  * them. Load with LoadOptions::everyVariant first. */

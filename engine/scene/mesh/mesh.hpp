@@ -21,4 +21,13 @@ namespace helio {
  */
 Scene loadObj(const ByteSource& source, const std::string& file, LoadMonitor& monitor);
 
+/** PLY, as text or binary of either byte order: vertices with positions, normals, texture coordinates (v up),
+ * colours and alpha (sRGB) under their usual names; faces as lists of any length, triangle strips. A comment
+ * "TextureFile NAME" is the base colour. The surface is Lambert; points alone are left out. */
+Scene loadPly(const ByteSource& source, const std::string& file, LoadMonitor& monitor);
+
+/** STL, as text or binary; a binary one may begin with "solid" too. Facets are flat, their normals are those
+ * of their corners, and the surface is Lambert of albedo 0.8. */
+Scene loadStl(const ByteSource& source, const std::string& file, LoadMonitor& monitor);
+
 }  // namespace helio

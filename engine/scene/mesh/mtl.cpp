@@ -2,10 +2,10 @@
 
 #include "engine/image/read_file.hpp"
 #include "engine/scene/folder.hpp"
-#include "engine/scene/image_decoding.hpp"
 #include "engine/scene/mesh/attributes.hpp"
 #include "engine/scene/mesh/mtl_material.hpp"
 #include "engine/scene/mesh/text.hpp"
+#include "engine/scene/mesh/textures.hpp"
 #include "engine/scene/notes.hpp"
 
 #include <heliograph/error.hpp>
@@ -21,73 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/** Images that materials name, each read once; decoded together at the end. */
-class TextureFiles final : public TextureResolver {
-public:
-    TextureFiles(fs::path folder, Scene& scene) : folder_(std::move(folder)), scene_(scene) {}
-
-    int texture(const std::string& name, bool isClamped) override {
-        const auto [known, isNew] = textures_.try_emplace({name, isClamped}, -1);
-        if (!isNew) return known->second;
-        const int image = read(name);
-        if (image < 0) return -1;
-        Texture texture;
-        texture.name = name;
-        texture.image = image;
-        if (isClamped) texture.wrapU = texture.wrapV = Wrap::ClampToEdge;
-        scene_.textures.push_back(std::move(texture));
-        return known->second = int(scene_.textures.size()) - 1;
-    }
-
-    /** An image that cannot be decoded leaves its textures white, with a warning. */
-    void decode(LoadMonitor& monitor) {
-        for (DecodingResult& result : decodeImages(images_, monitor)) {
-            if (!result.fault.empty()) {
-                warn(scene_, fmt::format("texture {} {}; white is shown", shown(result.place), result.fault));
-                result.image.width = result.image.height = 1;
-                result.image.texels = std::vector<std::uint8_t>(4, 255);
-            }
-            scene_.images.push_back(std::move(result.image));
-        }
-    }
-
-private:
-    int read(const std::string& name) {
-        const auto [known, isNew] = files_.try_emplace(name, -1);
-        if (!isNew) return known->second;
-        const std::optional<fs::path> path = pathBelow(name);
-        if (!path) {
-            warn(scene_, fmt::format("texture {} leads out of the file's folder; left out", shown(name)));
-            return -1;
-        }
-        EncodedImage image;
-        image.place = image.name = name;
-        try {
-            image.owned = readFile(folder_ / *path);
-        } catch (const InputError& error) {
-            warn(scene_, fmt::format("texture {} {}; left out", shown(name), error.fault));
-            return -1;
-        }
-        image.bytes = image.owned;
-        const auto same = std::find_if(images_.begin(), images_.end(), [&](const EncodedImage& other) {
-            return std::ranges::equal(other.bytes, image.bytes);
-        });
-        known->second = int(same - images_.begin());
-        if (same == images_.end()) images_.push_back(std::move(image));
-        return known->second;
-    }
-
-    fs::path folder_;
-    Scene& scene_;
-    std::map<std::pair<std::string, bool>, int> textures_;
-    std::map<std::string, int> files_;
-    std::vector<EncodedImage> images_;
-};
-
 /** Finds the definitions of the names that are used; the first of each counts. */
 class Library {
 public:
-    Library(const std::string& file, const std::vector<std::string>& names, TextureResolver& textures,
+    Library(const std::string& file, const std::vector<std::string>& names, TextureFiles& textures,
             Scene& scene)
         : file_(file), textures_(textures), scene_(scene), found_(names.size()) {
         for (std::size_t i = 0; i < names.size(); ++i) wanted_.emplace(names[i], i);
@@ -152,7 +89,7 @@ private:
     }
 
     const std::string& file_;
-    TextureResolver& textures_;
+    TextureFiles& textures_;
     Scene& scene_;
     std::map<std::string, std::size_t> wanted_;
     std::vector<std::optional<Material>> found_;

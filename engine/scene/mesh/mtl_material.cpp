@@ -45,7 +45,7 @@ constexpr std::array<std::pair<std::string_view, std::size_t>, 16> numeric{{
 
 class Builder {
 public:
-    Builder(const std::string& file, const MtlBlock& block, TextureResolver& textures, Scene& scene)
+    Builder(const std::string& file, const MtlBlock& block, TextureFiles& textures, Scene& scene)
         : file_(file), block_(block), textures_(textures), scene_(scene) {}
 
     Material build() {
@@ -285,7 +285,7 @@ private:
 
     const std::string& file_;
     const MtlBlock& block_;
-    TextureResolver& textures_;
+    TextureFiles& textures_;
     Scene& scene_;
     tinyobj::material_t from_{};
     std::set<std::string> keywords_;
@@ -294,7 +294,7 @@ private:
 
 }  // namespace
 
-Material materialOf(const std::string& file, const MtlBlock& block, TextureResolver& textures, Scene& scene) {
+Material materialOf(const std::string& file, const MtlBlock& block, TextureFiles& textures, Scene& scene) {
     return Builder(file, block, textures, scene).build();
 }
 

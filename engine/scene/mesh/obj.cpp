@@ -184,36 +184,13 @@ private:
         std::atomic<bool> hasLarge{false};
         tbb::parallel_for(std::size_t(0), chunks_.size(), [&](std::size_t i) {
             ObjChunk& chunk = chunks_[i].chunk;
-            std::vector<glm::vec3> polygon;
-            std::vector<std::uint32_t> cut;
-            std::vector<std::int32_t> fan;
-            for (const auto& [triangle, corners] : chunk.polygons) {
-                // The fan's corner k: 0 and 1 are those of its first triangle, the others end a triangle.
-                const auto place = [first = triangle](std::size_t k) {
-                    return std::size_t(first) * 3 + (k < 2 ? k : (k - 2) * 3 + 2);
-                };
-                polygon.clear();
-                for (std::size_t k = 0; k < corners; ++k)
-                    polygon.push_back(positions_[std::size_t(chunk.corners[Position][place(k)])]);
-                cut.clear();
-                if (!triangulate(polygon, cut)) {
-                    if (corners > maximumEarClipping) hasLarge = true;
-                    continue;
-                }
-                for (auto& list : chunk.corners) {
-                    if (list.empty()) continue;
-                    fan.clear();
-                    for (std::size_t k = 0; k < corners; ++k) fan.push_back(list[place(k)]);
-                    for (std::size_t k = 0; k < cut.size(); ++k)
-                        list[std::size_t(triangle) * 3 + k] = fan[cut[k]];
-                }
-            }
+            auto& corners = chunk.corners;
+            if (cutFans(positions_, chunk.polygons,
+                        {&corners[Position], &corners[TexCoord], &corners[Normal]}))
+                hasLarge = true;
             chunk.polygons = {};
         });
-        if (hasLarge) {
-            warn(scene_, fmt::format("polygons of more than {} corners are shown as if they were convex",
-                                     maximumEarClipping));
-        }
+        if (hasLarge) warn(scene_, largePolygonWarning());
     }
 
     /** One material, and every corner has the same index in all lists or none: they can stay as they are. */

@@ -1,5 +1,6 @@
 #pragma once
 /** @file A piece of an OBJ file (Wavefront's Advanced Visualizer, appendix B), parsed by itself. */
+#include "engine/scene/mesh/polygon.hpp"
 #include "engine/scene/mesh/text.hpp"
 
 #include <glm/glm.hpp>
@@ -26,11 +27,7 @@ struct ObjChunk {
     /** Places in `corners` whose index counts from where the chunk's own elements begin. */
     std::array<std::vector<std::uint32_t>, attributeCount> relative;
 
-    /** A polygon, which lies in the corners as a fan. */
-    struct Polygon {
-        std::uint32_t triangle, corners;
-    };
-    std::vector<Polygon> polygons;
+    std::vector<Fan> polygons;
 
     struct MaterialChange {
         std::uint32_t triangle;  ///< the first with it

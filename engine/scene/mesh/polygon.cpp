@@ -1,6 +1,6 @@
 #include "engine/scene/mesh/polygon.hpp"
 
-#include <cmath>
+#include <fmt/format.h>
 
 namespace helio::mesh {
 namespace {
@@ -88,6 +88,11 @@ bool triangulate(std::span<const glm::vec3> polygon, std::vector<std::uint32_t>&
     if (clipper.isConvex() || polygon.size() > maximumEarClipping) return false;
     clipper.clip(triangles);
     return true;
+}
+
+std::string largePolygonWarning() {
+    return fmt::format("polygons of more than {} corners are shown as if they were convex",
+                       maximumEarClipping);
 }
 
 }  // namespace helio::mesh

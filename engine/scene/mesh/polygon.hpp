@@ -3,7 +3,9 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace helio::mesh {
@@ -17,5 +19,47 @@ constexpr std::size_t maximumEarClipping = 512;
  * `triangles` is left as it was then, else it has three corners for each triangle.
  */
 bool triangulate(std::span<const glm::vec3> polygon, std::vector<std::uint32_t>& triangles);
+
+/** A polygon that lies in a list of corners, three a triangle, as a fan. */
+struct Fan {
+    std::uint32_t triangle;  ///< the first
+    std::uint32_t corners;   ///< of the polygon
+};
+
+/** Cuts polygons that are not convex anew, in all lists of corners; empty lists stay so. The first holds
+ * indices of positions. Returns whether a polygon has more corners than can be cut. */
+template <class Index>
+bool cutFans(std::span<const glm::vec3> positions, std::span<const Fan> fans,
+             std::initializer_list<std::vector<Index>*> lists) {
+    bool hasLarge = false;
+    std::vector<glm::vec3> polygon;
+    std::vector<std::uint32_t> cut;
+    std::vector<Index> corners;
+    for (const Fan& fan : fans) {
+        // The polygon's corner k: 0 and 1 are those of the first triangle, each other one ends a triangle.
+        const auto place = [&fan](std::size_t k) {
+            return std::size_t(fan.triangle) * 3 + (k < 2 ? k : (k - 2) * 3 + 2);
+        };
+        polygon.clear();
+        for (std::size_t k = 0; k < fan.corners; ++k)
+            polygon.push_back(positions[std::size_t((**lists.begin())[place(k)])]);
+        cut.clear();
+        if (!triangulate(polygon, cut)) {
+            hasLarge = hasLarge || fan.corners > maximumEarClipping;
+            continue;
+        }
+        for (std::vector<Index>* const list : lists) {
+            if (list->empty()) continue;
+            corners.clear();
+            for (std::size_t k = 0; k < fan.corners; ++k) corners.push_back((*list)[place(k)]);
+            for (std::size_t k = 0; k < cut.size(); ++k)
+                (*list)[std::size_t(fan.triangle) * 3 + k] = corners[cut[k]];
+        }
+    }
+    return hasLarge;
+}
+
+/** What to say where cutFans() returns true. */
+std::string largePolygonWarning();
 
 }  // namespace helio::mesh

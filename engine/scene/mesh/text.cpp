@@ -63,22 +63,25 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::optional<float> parseReal(std::string_view word) {
+std::optional<double> parseDouble(std::string_view word) {
     word = withoutPlus(word);
-    float value = 0;
+    double value = 0;
     const char* const end = word.data() + word.size();
     const auto [at, error] = std::from_chars(word.data(), end, value);
     if (at != end || word.empty()) return std::nullopt;
-    if (error == std::errc::result_out_of_range) {
-        // Too small, or too large: only what is too small has a negative exponent or begins with zeros.
-        double wide = 0;
-        const auto [wideAt, wideError] = std::from_chars(word.data(), end, wide);
-        if (wideError == std::errc()) return std::abs(wide) < 1 ? std::optional(0.0f) : std::nullopt;
-        return word.find("e-") != word.npos || word.find("E-") != word.npos ? std::optional(0.0f)
-                                                                            : std::nullopt;
+    if (error == std::errc::result_out_of_range) {  // too small, or too large
+        const bool isSmall = word.find("e-") != word.npos || word.find("E-") != word.npos;
+        return isSmall ? std::optional(0.0) : std::nullopt;
     }
     if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
     return value;
+}
+
+std::optional<float> parseReal(std::string_view word) {
+    const std::optional<double> value = parseDouble(word);
+    // What single precision rounds to infinity.
+    if (!value || std::abs(*value) >= 0x1.ffffffp127) return std::nullopt;
+    return float(*value);
 }
 
 std::optional<std::int64_t> parseInteger(std::string_view word) {

@@ -40,6 +40,8 @@ std::string_view takeWord(std::string_view& line);
 std::string_view trimmed(std::string_view text);
 /** A finite number that single precision can hold; what is too small for it is 0. */
 std::optional<float> parseReal(std::string_view word);
+/** A finite number. */
+std::optional<double> parseDouble(std::string_view word);
 std::optional<std::int64_t> parseInteger(std::string_view word);
 /** A piece of a file for a message: short, whatever it holds. */
 std::string shown(std::string_view text);

@@ -1,0 +1,49 @@
+#pragma once
+/** @file The numbers in a PLY file's body, one after the other. */
+#include "engine/scene/mesh/ply_header.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace helio::mesh {
+
+class PlyValues {
+public:
+    PlyValues(const ByteSource& source, const PlyHeader& header, const std::string& file);
+
+    /** Where the next values are, for messages: "vertex 7". The name must outlive its use. */
+    void at(const std::string& element, std::uint64_t index) {
+        element_ = &element;
+        index_ = index;
+    }
+    /** The next value. Throws InputError where the file ends, or for a word that is no number. */
+    double next(PlyType type);
+    /** Goes past some values. */
+    void skip(PlyType type, std::uint64_t count);
+    /** Bytes from here to the end. */
+    std::uint64_t left() const { return source_.size() - offset_ + (buffer_.size() - place_); }
+    /** Bytes that so many values take at least. */
+    double atLeast(PlyType type, double count) const {
+        return count * (isText_ ? 2 : double(sizeOf(type))) - (isText_ ? 1 : 0);
+    }
+    double fraction() const;
+    [[noreturn]] void refuse(const std::string& fault, const std::string& remedy) const;
+
+private:
+    /** Makes at least `size` bytes of the buffer available, where there are as many. */
+    void fill(std::size_t size);
+    double nextWord();
+
+    const ByteSource& source_;
+    const std::string& file_;
+    bool isText_, isSwapped_;
+    std::uint64_t offset_;  ///< of what the buffer has not got yet
+    std::vector<char> buffer_;
+    std::size_t place_ = 0;  ///< in the buffer
+    const std::string* element_ = nullptr;
+    std::uint64_t index_ = 0;
+};
+
+}  // namespace helio::mesh
