@@ -6,6 +6,7 @@
 #include "passes/renderer/scene_warnings.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/pose.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/version.hpp>
 
@@ -29,6 +30,7 @@ void check(const RenderOptions& options) {
            fmt::format("{} samples per pixel", options.samples), "give 1 to 16777215");
     refuse(!(options.maxError >= 0), "maxError", "is negative or not a number", "give 0 for no limit");
     refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
+    refuse(!std::isfinite(options.frameTime), "frameTime", "is not finite", "give a time in seconds");
     if (!options.environment) return;
     const Environment& environment = *options.environment;
     refuse(environment.image >= 0, "environment", "an image as environment is not there yet",
@@ -128,13 +130,18 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderResult& result = job.result;
     check(options);
     if (options.pipeline == Pipeline::Path) checkPathSize(options.size);
-    scene.validate();
+    std::optional<Scene> still;  // only a scene that moves is copied
+    if (needsPose(scene)) {
+        still = posed(scene, options.frameTime, options.animation);
+    } else {
+        scene.validate();
+    }
     result.scene = scene.name;
     result.device = impl_->device.info().name;
     result.version = version();
     result.seed = options.seed;
     result.warnings = scene.warnings;
-    impl_->run(scene, job);
+    impl_->run(still ? *still : scene, job);
     job.finish();
     if (result.image.data.empty()) result.image = blackImage(options.size);
     if (!job.graphviz.empty()) impl_->graphviz = job.graphviz;

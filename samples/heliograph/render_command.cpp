@@ -260,6 +260,13 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
     command->add_option("--variant", arguments->load.variant,
                         "Name of the material variant to show (KHR_materials_variants)");
+    command
+        ->add_option("--frame-time", options.frameTime,
+                     "Seconds at which animations, skins and morph targets are evaluated")
+        ->check(CLI::Number)
+        ->capture_default_str();
+    command->add_option("--animation", options.animation,
+                        "Name or index of the animation; default the first; none for the pose of the nodes");
     command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
     command->add_option("--spp", options.samples, "Samples per pixel")
         ->check(CLI::Range(1u, (1u << 24) - 1))

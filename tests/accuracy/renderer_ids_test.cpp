@@ -4,6 +4,7 @@
 #include "passes/raster/view.hpp"
 #include "tests/support/device.hpp"
 
+#include <heliograph/pose.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <gtest/gtest.h>
@@ -129,7 +130,7 @@ void expectAgreementOnAsset(const char* name) {
     if (!std::filesystem::exists(file))
         GTEST_SKIP() << "left out: " << name << " is not in " HELIOGRAPH_SHARED_DIR;
     Renderer renderer(test::deviceOptions());
-    expectAgreement(renderer, load(file.string()), {240, 180});
+    expectAgreement(renderer, posed(load(file.string()), 0.5), {240, 180});
 }
 
 TEST(PipelineAgreement, OfIdsOnFlightHelmet) {
@@ -137,6 +138,9 @@ TEST(PipelineAgreement, OfIdsOnFlightHelmet) {
 }
 TEST(PipelineAgreement, OfIdsOnFox) {
     expectAgreementOnAsset("Fox.glb");
+}
+TEST(PipelineAgreement, OfIdsOnMorphStressTest) {
+    expectAgreementOnAsset("MorphStressTest.gltf");
 }
 
 }  // namespace

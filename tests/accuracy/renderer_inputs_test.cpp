@@ -119,6 +119,30 @@ TEST(RendererInputs, TexturesReadTheCoordinateSetTheyName) {
     }
 }
 
+TEST(RendererInputs, MovingScenesAreShownAsTheyStandAtTheFramesTime) {
+    Scene scene = glowingSquare();
+    scene.animations = {
+        {"leave",
+         {{0, AnimationPath::Translation, Interpolation::Linear, {0, 1, 2}, {0, 0, 0, 0, 0, 0, 100, 0, 0}}}}};
+    for (const Pipeline pipeline : kBoth) {
+        RenderOptions options = small(pipeline);
+        options.environment = Environment{};
+        const auto middle = [&](double time, const char* animation = "") {
+            options.frameTime = time;
+            options.animation = animation;
+            return renderer().render(scene, options).image.data.at(0);
+        };
+        EXPECT_EQ(middle(0), 0.5f);
+        const std::uint64_t builds = renderer().sceneBuilds();
+        EXPECT_EQ(middle(1), 0.5f);
+        EXPECT_EQ(renderer().sceneBuilds(), builds) << "the same pose is the same scene";
+        EXPECT_EQ(middle(2), 0);
+        EXPECT_EQ(middle(2, "none"), 0.5f);
+        EXPECT_THROW(middle(0, "walk"), InputError);
+        EXPECT_THROW(middle(std::nan("")), InputError);
+    }
+}
+
 TEST(RendererInputs, LightBeyondWhatAPictureHoldsIsRefused) {
     for (const Pipeline pipeline : kBoth) {
         Scene scene = glowingSquare();

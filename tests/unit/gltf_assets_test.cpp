@@ -1,7 +1,8 @@
 #include "tests/unit/gltf_support.hpp"
 
+#include <heliograph/pose.hpp>
+
 #include <cmath>
-#include <set>
 
 namespace helio::test {
 namespace {
@@ -54,10 +55,13 @@ TEST_F(GltfAssets, Fox) {
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.triangleCount(), 576u);
     EXPECT_EQ(scene.images.size(), 1u);
-    std::set<std::string> skipped;
-    for (const auto& [what, why] : scene.skipped) skipped.insert(what);
-    EXPECT_TRUE(skipped.contains("skins"));
-    EXPECT_TRUE(skipped.contains("animations"));
+    EXPECT_TRUE(scene.skipped.empty());
+    ASSERT_EQ(scene.skins.size(), 1u);
+    EXPECT_EQ(scene.skins[0].joints.size(), 24u);
+    ASSERT_EQ(scene.animations.size(), 3u);
+    EXPECT_EQ(scene.animations[0].name, "Survey");
+    EXPECT_EQ(scene.animations[2].name, "Run");
+    expectSound(posed(scene, 0.5));
 }
 
 TEST_F(GltfAssets, MorphStressTest) {
@@ -68,7 +72,34 @@ TEST_F(GltfAssets, MorphStressTest) {
     EXPECT_EQ(scene.triangleCount(), 2412u);
     EXPECT_EQ(scene.images.size(), 3u);
     EXPECT_EQ(scene.meshes[0].primitives[0].texcoords.size(), 2u);
-    EXPECT_FALSE(scene.skipped.empty());
+    EXPECT_TRUE(scene.skipped.empty());
+    ASSERT_EQ(scene.meshes[0].primitives[0].targets.size(), 8u);
+    ASSERT_EQ(scene.animations.size(), 3u);
+    // Every vertex by hand, from what the file says of it and the weights between two keys.
+    const AnimationChannel& channel = scene.animations[0].channels.at(0);
+    ASSERT_EQ(channel.interpolation, Interpolation::Linear);
+    for (double time : {0.0, 0.3, 1.45, 2.0}) {
+        const Scene still = posed(scene, time);
+        expectSound(still);
+        std::size_t key = 0;
+        while (key + 2 < channel.times.size() && channel.times[key + 1] <= time) ++key;
+        const double s = (time - channel.times[key]) / (channel.times[key + 1] - channel.times[key]);
+        for (std::size_t p = 0; p < 2; ++p) {
+            const Primitive& from = scene.meshes[0].primitives[p];
+            const auto mesh = std::size_t(still.instances().at(0).mesh);
+            const auto& positions = still.meshes[mesh].primitives[p].positions;
+            ASSERT_EQ(positions.size(), from.positions.size());
+            for (std::size_t v = 0; v < positions.size(); ++v) {
+                glm::dvec3 expected = from.positions[v];
+                for (std::size_t t = 0; t < 8; ++t) {
+                    const double weight =
+                        (1 - s) * channel.values[key * 8 + t] + s * channel.values[key * 8 + 8 + t];
+                    expected += weight * glm::dvec3(from.targets[t].positions.at(v));
+                }
+                ASSERT_LT(glm::distance(expected, glm::dvec3(positions[v])), 1e-6) << time << " " << v;
+            }
+        }
+    }
 }
 
 }  // namespace

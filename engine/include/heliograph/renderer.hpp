@@ -43,6 +43,8 @@ struct RenderOptions {
     bool nextEventEstimation = true;
     std::uint32_t seed = 0;
     std::string camera;                      ///< name or index; empty for the first
+    double frameTime = 0;                    ///< seconds; the scene is shown as posed() makes it
+    std::string animation;                   ///< name, index or "none"; empty for the first
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids

@@ -244,9 +244,14 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
 
 std::vector<float> Asset::floats(int index, int components, const std::string& place) const {
     const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
-    if (tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type)) != components || accessor.type > 4) {
+    const int type = components == 1    ? TINYGLTF_TYPE_SCALAR
+                     : components == 16 ? TINYGLTF_TYPE_MAT4
+                                        : components;  // VEC2 to VEC4 are named by their numbers
+    if (accessor.type != type) {
         throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
-                         fmt::format("give an accessor of VEC{}", components));
+                         "give an accessor of " + (components == 1    ? std::string("SCALAR")
+                                                   : components == 16 ? std::string("MAT4")
+                                                                      : fmt::format("VEC{}", components)));
     }
     const double one = accessor.normalized ? normalizedOne(accessor.componentType) : 0;
     const Layout from = layout(index);  // checked before memory is taken for what the count says

@@ -26,8 +26,9 @@ public:
     /** The bytes of a buffer view; checked against its buffer. */
     std::span<const std::byte> bufferView(int index) const;
 
-    /** An accessor's numbers as floats, `components` per element: integers as they are, or scaled to 0..1 or
-     * -1..1 where normalized. Every number is finite. `place` and the types' names are for messages. */
+    /** An accessor's numbers as floats, `components` per element (1 a SCALAR, 2 to 4 a VEC, 16 a MAT4):
+     * integers as they are, or scaled to 0..1 or -1..1 where normalized. Every number is finite. `place` and
+     * the types' names are for messages. */
     std::vector<float> floats(int accessor, int components, const std::string& place) const;
     /** An accessor of unsigned integers. */
     std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;

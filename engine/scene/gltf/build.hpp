@@ -20,6 +20,16 @@ bool isSupported(const std::string& extension);
 /** Fills Scene::meshes and variants. */
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene);
 
+/** Weights of a mesh or of a node, one per morph target of the mesh. Throws InputError for another number. */
+std::vector<float> morphWeights(const Asset& asset, const std::vector<double>& weights,
+                                const tinygltf::Mesh& mesh, const std::string& place);
+
+/** Fills Scene::skins; after the meshes and nodes. */
+void buildSkins(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
+
+/** Fills Scene::animations; after the meshes and nodes. */
+void buildAnimations(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
+
 /** Fills Scene::materials, textures and images: the materials in `used` with their textures, the others
  * without. */
 void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& monitor, helio::Scene& scene);

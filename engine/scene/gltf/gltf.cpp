@@ -51,12 +51,6 @@ void checkExtensions(const Container& container, helio::Scene& scene) {
         const auto& name = extension.get_ref<const std::string&>();
         if (!isSupported(name)) skip(scene, name, "is not supported");
     }
-    const auto has = [&](const char* member) {
-        const auto found = container.document.find(member);
-        return found != container.document.end() && !found->empty();
-    };
-    if (has("skins")) skip(scene, "skins", "are not evaluated; meshes stand as they are modelled");
-    if (has("animations")) skip(scene, "animations", "are not evaluated");
 }
 
 /** Materials that some instance shows, under any variant if all are wanted. */
@@ -86,6 +80,8 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     gltf::MemoryBudget memory(asset);
     gltf::buildMeshes(asset, memory, monitor, scene);
     gltf::buildNodes(asset, memory, scene);
+    gltf::buildSkins(asset, memory, scene);
+    gltf::buildAnimations(asset, memory, scene);
     if (!options.variant.empty()) chooseVariant(scene, options.variant);
     gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), monitor, scene);
     return scene;

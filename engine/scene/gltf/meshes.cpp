@@ -109,8 +109,9 @@ private:
     }
 
     template <class Vector>
-    std::vector<Vector> attribute(const std::string& name, int accessor) const {
-        const std::string place = place_ + ".attributes." + name;
+    std::vector<Vector> attribute(const std::string& name, int accessor,
+                                  const std::string& of = "attributes.") const {
+        const std::string place = place_ + "." + of + name;
         if (asset_.count(accessor) != size_) {
             throw InputError(asset_.file(), place,
                              fmt::format("has {} elements, POSITION {}", asset_.count(accessor), size_),
@@ -138,11 +139,9 @@ private:
                 primitive.tangents = attribute<glm::vec4>(name, accessor);
             } else if (name == "COLOR_0") {
                 readColors(accessor, primitive);
-            } else if (!name.starts_with("TEXCOORD_") && !name.starts_with("_")) {
-                skip(scene_, "attribute " + name,
-                     name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")
-                         ? "skins are not evaluated"
-                         : "the scene model has no place for it");
+            } else if (!name.starts_with("TEXCOORD_") && !name.starts_with("JOINTS_") &&
+                       !name.starts_with("WEIGHTS_") && !name.starts_with("_")) {
+                skip(scene_, "attribute " + name, "the scene model has no place for it");
             }
         }
         for (int set = 0;; ++set) {
@@ -151,6 +150,49 @@ private:
             if (found == from.attributes.end()) break;
             primitive.texcoords.push_back(attribute<glm::vec2>(name, found->second));
         }
+        const bool hasSkins = asset_.document().contains("skins");
+        for (int set = 0; hasSkins && readInfluences(from, set, primitive); ++set) {
+        }
+        for (std::size_t t = 0; t < from.targets.size(); ++t)
+            primitive.targets.push_back(target(from.targets[t], fmt::format("targets[{}].", t)));
+    }
+
+    /** Joints and weights of a set, if the primitive has it. */
+    bool readInfluences(const tinygltf::Primitive& from, int set, Primitive& primitive) const {
+        const std::string jointsName = fmt::format("JOINTS_{}", set),
+                          weightsName = fmt::format("WEIGHTS_{}", set);
+        const auto joints = from.attributes.find(jointsName), weights = from.attributes.find(weightsName);
+        if ((joints == from.attributes.end()) != (weights == from.attributes.end())) {
+            throw InputError(asset_.file(), place_ + ".attributes",
+                             fmt::format("has one of {} and {}", jointsName, weightsName),
+                             "give both, or none");
+        }
+        if (joints == from.attributes.end()) return false;
+        const int type = asset_.model().accessors[std::size_t(joints->second)].componentType;
+        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
+            throw InputError(asset_.file(), place_ + ".attributes." + jointsName, "has the wrong type",
+                             "give unsigned bytes or shorts");
+        }
+        const std::vector<glm::vec4> numbers = attribute<glm::vec4>(jointsName, joints->second);
+        primitive.joints.emplace_back(numbers.begin(), numbers.end());
+        primitive.weights.push_back(attribute<glm::vec4>(weightsName, weights->second));
+        return true;
+    }
+
+    MorphTarget target(const std::map<std::string, int>& from, const std::string& place) const {
+        MorphTarget result;
+        for (const auto& [name, accessor] : from) {
+            if (name == "POSITION") {
+                result.positions = attribute<glm::vec3>(name, accessor, place);
+            } else if (name == "NORMAL") {
+                result.normals = attribute<glm::vec3>(name, accessor, place);
+            } else if (name == "TANGENT") {
+                result.tangents = attribute<glm::vec3>(name, accessor, place);
+            } else if (!name.starts_with("_")) {
+                skip(scene_, "morph targets of " + name, "positions, normals and tangents are morphed");
+            }
+        }
+        return result;
     }
 
     void readColors(int accessor, Primitive& primitive) const {
@@ -229,6 +271,17 @@ void readVariants(const tinygltf::Primitive& from, const std::string& place, con
 
 }  // namespace
 
+std::vector<float> morphWeights(const Asset& asset, const std::vector<double>& weights,
+                                const tinygltf::Mesh& mesh, const std::string& place) {
+    const std::size_t targets = mesh.primitives[0].targets.size();
+    if (!weights.empty() && weights.size() != targets) {
+        throw InputError(asset.file(), place,
+                         fmt::format("has {} elements for {} morph targets", weights.size(), targets),
+                         "give one weight per morph target");
+    }
+    return {weights.begin(), weights.end()};
+}
+
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
     readVariantNames(asset, scene);
     for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
@@ -240,7 +293,12 @@ void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor,
             monitor.report("geometry", (double(m) + double(p) / double(from.primitives.size())) /
                                            double(asset.model().meshes.size()));
             const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
-            if (!primitive.targets.empty()) skip(scene, "morph targets", "the unmorphed mesh is shown");
+            if (primitive.targets.size() != from.primitives[0].targets.size()) {
+                throw InputError(asset.file(), place + ".targets",
+                                 fmt::format("has {} elements, the mesh's first primitive {}",
+                                             primitive.targets.size(), from.primitives[0].targets.size()),
+                                 "give every primitive of a mesh as many morph targets");
+            }
             if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
                 skip(scene, primitive.mode == TINYGLTF_MODE_POINTS ? "points" : "lines",
                      "only triangles are shown");
@@ -253,6 +311,8 @@ void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor,
             readVariants(primitive, place, scene, memory, built);
             if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
         }
+        if (!mesh.primitives.empty())
+            mesh.weights = morphWeights(asset, from.weights, from, fmt::format("meshes[{}].weights", m));
         scene.meshes.push_back(std::move(mesh));
     }
 }

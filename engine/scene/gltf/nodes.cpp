@@ -138,12 +138,21 @@ Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, M
     if (from.rotation.size() == 4) node.rotation = rotationOf(asset, from.rotation, index);
     if (from.scale.size() == 3) node.scale = vectorOf(from.scale);
     node.mesh = from.mesh;
+    if (node.mesh >= 0 && !scene.meshes[std::size_t(node.mesh)].primitives.empty()) {
+        node.weights = morphWeights(asset, from.weights, asset.model().meshes[std::size_t(node.mesh)],
+                                    fmt::format("nodes[{}].weights", index));
+        node.skin = from.skin;
+    }
     node.camera = from.camera;
     for (const auto& [name, value] : from.extensions) {
         if (name == "KHR_lights_punctual") {
             node.light = value.Get("light").GetNumberAsInt();
         } else if (name == "EXT_mesh_gpu_instancing") {
-            node.copies = copiesOf(asset, value.Get("attributes"), index, memory, scene);
+            if (from.skin >= 0) {
+                skip(scene, "EXT_mesh_gpu_instancing of skinned meshes", "one is shown where its skin says");
+            } else {
+                node.copies = copiesOf(asset, value.Get("attributes"), index, memory, scene);
+            }
         } else {
             skip(scene, name, "is not supported");
         }

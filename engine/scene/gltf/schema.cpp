@@ -177,6 +177,27 @@ Check node() {
     };
 }
 
+Check skin() {
+    return object({{"name", string()},
+                   {"inverseBindMatrices", indexInto("accessors")},
+                   {"skeleton", indexInto("nodes")},
+                   {"joints", arrayOf(indexInto("nodes"), 1), required}});
+}
+
+Check animation() {
+    // Samplers are an animation's own: indices into them are checked as they are read.
+    const Check target = object({{"node", indexInto("nodes")}, {"path", string(), required}});
+    const Check channel =
+        object({{"sampler", integer(0, maximumInt), required}, {"target", target, required}});
+    const Check sampler =
+        object({{"input", indexInto("accessors"), required},
+                {"output", indexInto("accessors"), required},
+                {"interpolation", oneOf(std::vector<std::string>{"LINEAR", "STEP", "CUBICSPLINE"})}});
+    return object({{"name", string()},
+                   {"channels", arrayOf(channel), required},
+                   {"samplers", arrayOf(sampler), required}});
+}
+
 Check camera() {
     const Check members = object({
         {"name", string()},
@@ -254,6 +275,8 @@ const Check& documentCheck() {
         {"meshes", arrayOf(mesh())},
         {"cameras", arrayOf(camera())},
         {"nodes", arrayOf(node())},
+        {"skins", arrayOf(skin())},
+        {"animations", arrayOf(animation())},
         {"scenes", arrayOf(object({{"name", string()}, {"nodes", arrayOf(indexInto("nodes"))}}))},
         {"scene", indexInto("scenes")},
         {"extensions",
