@@ -33,6 +33,8 @@ public:
     /** `format` is a file extension without its dot. */
     virtual std::string decode(std::span<const std::byte> file, const std::string& format,
                                DecodedImage& image) const = 0;
+    /** The same of a file of any format that the module knows. */
+    virtual std::string decodeFile(const std::filesystem::path& file, DecodedImage& image) const = 0;
     /** float32, all channels and the metadata. */
     virtual std::string encodeExr(const ImageF& image, std::vector<std::byte>& file) const = 0;
     /** 8-bit R, G, B, already encoded. `format` is png or jpg. */

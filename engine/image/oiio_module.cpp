@@ -73,6 +73,16 @@ std::string readTexels(ImageInput& input, const ImageSpec& spec, T opaque, Decod
     return {};
 }
 
+std::string readAnyTexels(ImageInput& input, const ImageSpec& spec, DecodedImage& image) {
+    const std::uint64_t texels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
+    if (std::string fault = checkSize(spec, texels, maximumTexels); !fault.empty()) return fault;
+    image.width = std::uint32_t(spec.width);
+    image.height = std::uint32_t(spec.height);
+    if (spec.format == TypeDesc::UINT8) return readTexels<std::uint8_t>(input, spec, 255, image);
+    if (spec.format == TypeDesc::UINT16) return readTexels<std::uint16_t>(input, spec, 65535, image);
+    return readTexels<float>(input, spec, 1.0f, image);
+}
+
 void readMetadata(const ImageSpec& spec, ImageF& image) {
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
         const TypeDesc type = attribute.type();
@@ -125,13 +135,16 @@ public:
         ImageSpec spec;
         if (!input || !input->set_ioproxy(&memory)) return oneLine(OIIO::geterror());
         if (!input->open("texture." + format, spec, hints)) return oneLine(input->geterror());
-        const std::uint64_t texels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
-        if (std::string fault = checkSize(spec, texels, maximumTexels); !fault.empty()) return fault;
-        image.width = std::uint32_t(spec.width);
-        image.height = std::uint32_t(spec.height);
-        if (spec.format == TypeDesc::UINT8) return readTexels<std::uint8_t>(*input, spec, 255, image);
-        if (spec.format == TypeDesc::UINT16) return readTexels<std::uint16_t>(*input, spec, 65535, image);
-        return readTexels<float>(*input, spec, 1.0f, image);
+        return readAnyTexels(*input, spec, image);
+    } catch (const std::exception& error) {
+        return oneLine(error.what());
+    }
+
+    std::string decodeFile(const std::filesystem::path& file, DecodedImage& image) const override try {
+        const ImageSpec hints = readHints();
+        const std::unique_ptr<ImageInput> input = ImageInput::open(file.string(), &hints);
+        if (!input) return oneLine(OIIO::geterror());
+        return readAnyTexels(*input, input->spec(), image);
     } catch (const std::exception& error) {
         return oneLine(error.what());
     }

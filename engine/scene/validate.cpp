@@ -47,6 +47,8 @@ public:
         if (scene_.environment) {
             light("environment", "radiance", scene_.environment->radiance);
             index("environment", "image", scene_.environment->image, scene_.images.size(), -1);
+            const glm::quat& rotation = scene_.environment->rotation;
+            number("environment", "rotation's squared length", glm::dot(rotation, rotation), 0.5, 2);
         }
         checkPlacements();
         for (std::size_t i = 0; i < scene_.skins.size(); ++i)

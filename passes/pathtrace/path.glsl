@@ -55,7 +55,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
              out ShadowRay shadow, out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, max(slot, 0));
-    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environment;
+    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, environment);
     if (HAS_EMISSION) {
         const Emission e = emission(s.triangle.material, s.triangle.g, s.b);
         const bool emits = hit && (s.front || e.doubleSided);
@@ -73,12 +73,12 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     cut = scatters && path.depth >= maxDepth;
     bool alive = scatters && !cut;
     const uint dimension = DIMENSION_PATH + path.depth * DIMENSIONS_PER_SCATTERING;
-    const vec2 choice = sample2D(SAMPLER_KIND, numbers, dimension + 2u);
+    const uvec2 choice = sampleBits2D(SAMPLER_KIND, numbers, dimension + 2u);
     const vec3 start = s.position + s.face * s.offset;
 
     shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
-    if ((NEXT_EVENT && HAS_AREA_LIGHTS) || HAS_PUNCTUAL_LIGHTS) {
-        const LightSample light = sampleLight(s.position, choice.x, sample2D(SAMPLER_KIND, numbers, dimension));
+    if (LIGHT_COUNT > 0) {
+        const LightSample light = sampleLight(s.position, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
         const float cosine = dot(s.shading, light.direction);
         const float scattered = cosine * INV_PI;
         const float weight = light.density > 0.0 ? light.density / (light.density + scattered) : 1.0;
@@ -98,7 +98,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     path.source = slot;
     path.depth += 1u;
     const float keep = path.depth < 2u ? 1.0 : min(1.0, ROULETTE * largestOf(path.throughput));
-    alive = alive && dot(s.face, path.direction) > 0.0 && choice.y < keep;
+    alive = alive && dot(s.face, path.direction) > 0.0 && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;
 }

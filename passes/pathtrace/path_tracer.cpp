@@ -66,10 +66,10 @@ struct PathTracer::Impl {
         return spec;
     }
 
-    /** The kernel as built, or with the scene written out. */
-    Kernel kernel(const Kernel& built) const {
-        if (!unrolled_) return built;
-        return compileVariant(built, {.defines = {}, .generated = generated_});
+    /** The kernel as built, or with the scene written out and what needs bindings of its own. */
+    Kernel kernel(const Kernel& built, const std::map<std::string, std::string>& defines = {}) const {
+        if (!unrolled_ && defines.empty()) return built;
+        return compileVariant(built, {.defines = defines, .generated = generated_});
     }
 
     void declareTrace(Film& film) {
@@ -80,14 +80,21 @@ struct PathTracer::Impl {
         SpecConstants spec = constants();
         spec.merge(scene_.constants({"HAS_EMISSION", "HAS_EMISSION_TEXTURES", "HAS_AREA_LIGHTS",
                                      "HAS_PUNCTUAL_LIGHTS", "HAS_ENVIRONMENT", "LIGHT_COUNT",
-                                     "HAS_TRIANGLE_LIGHTS"}));
+                                     "HAS_TRIANGLE_LIGHTS", "LIGHT_BITS"}));
+        std::map<std::string, std::string> defines;
+        std::vector<std::string_view> buffers = {"uLights"};
+        if (scene_.hasEnvironmentImage()) {
+            defines["ENVIRONMENT_IMAGE"] = "1";
+            buffers.push_back("uEnvironmentMap");
+            spec.merge(scene_.environmentConstants());
+        }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         spec["COUNT_TURNS"] = !unrolled_;
-        graph.compute("trace", kernel(shaders::trace), {.spec = spec})
+        graph.compute("trace", kernel(shaders::trace, defines), {.spec = spec})
             .reads(scene_.bindings(graph, kSurfaceBuffers))
-            .reads(scene_.bindings(graph, {"uLights"}))
+            .reads(scene_.bindings(graph, buffers))
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
             .record([this](Commands& commands) {
                 const auto groups = groupsFor(options_.size);

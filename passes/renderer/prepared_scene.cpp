@@ -33,7 +33,7 @@ void checkAxes(const Scene& scene, const PlacedCamera& placed) {
 }  // namespace
 
 PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptions& pack)
-    : deviceScene(device, scene, pack), bounds(scene.bounds()), skipped(scene.skipped) {
+    : deviceScene(device, scene, pack), bounds(scene.bounds()), skipped(scene.skipped), warnings(deviceScene.info().warnings) {
     const SceneFeatures all(scene);
     features = all.present();
     for (const SceneFeatures::Absent& absent : all.absent()) skipped.emplace_back(absent.name, absent.why);
@@ -49,9 +49,7 @@ PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Envir
         return *prepared_;
     }
     prepared_.reset();  // before the new one: both need not fit the device
-    const bool same = environment.has_value() == scene.environment.has_value() &&
-                      (!environment || (environment->radiance == scene.environment->radiance &&
-                                        environment->image == scene.environment->image));
+    const bool same = environment == scene.environment;
     if (same) {
         prepared_ = std::make_unique<PreparedScene>(device_, scene, pack);
     } else {

@@ -24,6 +24,7 @@ struct PreparedScene {
     Scene::Bounds bounds;
     std::vector<std::string> features;
     std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why
+    std::vector<std::string> warnings;                         ///< what is not shown as it is given
     std::unique_ptr<RasterSession> raster;                     ///< of the last size, where there was one
 };
 

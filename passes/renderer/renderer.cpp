@@ -33,13 +33,21 @@ void check(const RenderOptions& options) {
     refuse(!std::isfinite(options.frameTime), "frameTime", "is not finite", "give a time in seconds");
     if (!options.environment) return;
     const Environment& environment = *options.environment;
-    refuse(environment.image >= 0, "environment", "an image as environment is not there yet",
-           "give a constant radiance");
     for (int c = 0; c < 3; ++c) {
         const float radiance = environment.radiance[c];
         refuse(!(radiance >= 0) || radiance > 0x1p100f, "environment", fmt::format("radiance {}", radiance),
                "give numbers from 0 to 2^100 (1.27e30), the most that a picture holds");
     }
+}
+
+void check(const std::optional<Environment>& environment, const Scene& scene) {
+    if (!environment) return;
+    refuse(environment->image >= int(scene.images.size()), "environment",
+           fmt::format("image {} does not exist", environment->image),
+           "add it to the scene's images, see loadTextureImage");
+    const double length = glm::dot(environment->rotation, environment->rotation);
+    refuse(!(length > 0.5 && length < 2), "environment", "its rotation is no unit quaternion",
+           "give a rotation");
 }
 
 /** A black picture: what there is when a render is cancelled before its first sample. */
@@ -99,6 +107,7 @@ void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     PreparedScene& prepared = scenes.prepare(scene, environment, pack);
     job.result.features = prepared.features;
     job.result.skipped = prepared.skipped;
+    job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
     warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
     if (!job.notify({.stage = "compile"})) return;
     if (path) {
@@ -136,6 +145,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     } else {
         scene.validate();
     }
+    check(options.environment, scene);
     result.scene = scene.name;
     result.device = impl_->device.info().name;
     result.version = version();

@@ -128,8 +128,8 @@ void add(Fingerprint& f, const TextureImage& image) {
 }
 
 void add(Fingerprint& f, const Environment& environment) {
-    const auto& [radiance, image] = environment;
-    addAll(f, radiance, image);
+    const auto& [radiance, image, rotation] = environment;
+    addAll(f, radiance, image, rotation);
 }
 
 }  // namespace

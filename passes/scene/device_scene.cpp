@@ -22,6 +22,12 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
                   {"HAS_ENVIRONMENT", environment != glm::vec3(0.0f)},
                   {"HAS_TRIANGLE_LIGHTS", info_.triangleLights},
                   {"LIGHT_COUNT", std::int32_t(info_.lightCount)},
+                  {"LIGHT_BITS", std::int32_t(info_.lightBits)},
+                  {"ENVIRONMENT_WIDTH", std::int32_t(info_.environmentSize[0])},
+                  {"ENVIRONMENT_HEIGHT", std::int32_t(info_.environmentSize[1])},
+                  {"ENVIRONMENT_ROW_BITS", std::int32_t(info_.environmentBits[0])},
+                  {"ENVIRONMENT_COLUMN_BITS", std::int32_t(info_.environmentBits[1])},
+                  {"ENVIRONMENT_ROTATED", info_.environmentRotated},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
     const auto upload = [&](std::string_view name, auto& values, Format view) {
         using T = typename std::decay_t<decltype(values)>::value_type;
@@ -42,6 +48,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uTextures", textures, Format::Undefined);
     upload("uTexels8", info_.texels8, Format::R32UI);
     upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
+    if (hasEnvironmentImage()) upload("uEnvironmentMap", info_.environmentMap, Format::Undefined);
     upload("uInstanceFirst", info_.instanceFirst, Format::R32UI);
 }
 
@@ -63,6 +70,12 @@ SpecConstants DeviceScene::constants(const std::vector<std::string_view>& names)
         result.insert(*found);
     }
     return result;
+}
+
+SpecConstants DeviceScene::environmentConstants() const {
+    if (!hasEnvironmentImage()) return {};
+    return constants({"ENVIRONMENT_WIDTH", "ENVIRONMENT_HEIGHT", "ENVIRONMENT_ROW_BITS",
+                      "ENVIRONMENT_COLUMN_BITS", "ENVIRONMENT_ROTATED"});
 }
 
 std::uint64_t DeviceScene::deviceBytes() const {

@@ -16,7 +16,8 @@ namespace helio {
 
 /** Uploaded scene. Move-only; must outlive the plans its buffers are imported into. Bindings by the names of
  * shaders/scene: uTriangles, uNodes, uNormals, uTexcoords, uColors, uMaterials, uLights, uTextures, uTexels8,
- * uTexelsFloat, uInstanceFirst. A buffer the scene does not need holds one zero texel. */
+ * uTexelsFloat, uInstanceFirst. A buffer the scene does not need holds one zero texel. Only where the
+ * environment is an image is there a uEnvironmentMap, for kernels compiled with ENVIRONMENT_IMAGE. */
 class DeviceScene {
 public:
     DeviceScene(Device& device, const Scene& scene, const PackOptions& options = {});
@@ -26,6 +27,10 @@ public:
 
     /** The named specialization constants of shaders/scene/features.glsl, with this scene's values. */
     SpecConstants constants(const std::vector<std::string_view>& names) const;
+
+    bool hasEnvironmentImage() const { return info_.environmentSize[0] > 0; }
+    /** The ENVIRONMENT_... constants of shaders/scene/environment.glsl; none where it is constant. */
+    SpecConstants environmentConstants() const;
 
     /** What was packed, without the arrays (they are on the device) but for `textures`. */
     const PackedScene& info() const { return info_; }

@@ -1,3 +1,4 @@
+#include "passes/scene/alias_table.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <glm/gtc/constants.hpp>
@@ -22,6 +23,17 @@ struct Candidate {
 
 double mean(const glm::dvec3& rgb) {
     return (rgb.x + rgb.y + rgb.z) / 3.0;
+}
+
+double square(double x) {
+    return x * x;
+}
+
+/** Of a sphere around all that light falls on; 1 for a scene without surfaces or extent. */
+double boundingRadius(const Scene& scene) {
+    const Scene::Bounds bounds = scene.bounds();
+    const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(bounds.upper - bounds.lower);
+    return radius > 0.0 ? radius : 1.0;
 }
 
 /** Whether two triangles are the halves of one parallelogram: they share an edge, and the corners across it
@@ -94,8 +106,7 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
 }
 
 void addPunctual(const Scene& scene, std::vector<Candidate>& lights) {
-    const Scene::Bounds bounds = scene.bounds();
-    const double radius = bounds.empty() ? 1.0 : 0.5 * glm::length(bounds.upper - bounds.lower);
+    const double radius = boundingRadius(scene);
     for (const PlacedLight& placed : scene.placedLights()) {
         const PunctualLight& source = scene.lights[std::size_t(placed.light)];
         const double strength = mean(glm::dvec3(source.intensity));
@@ -122,12 +133,20 @@ void addPunctual(const Scene& scene, std::vector<Candidate>& lights) {
             }
             case PunctualLight::Type::Directional:
                 light.kind = LightKind::Directional;
-                light.weight = glm::pi<double>() * radius * radius * strength;
+                light.weight = glm::pi<double>() * square(radius) * strength;
                 break;
         }
         light.edge2.z = source.type == PunctualLight::Type::Directional ? 0.0 : double(source.range);
         lights.push_back(light);
     }
+}
+
+/** The image of the surroundings: what of its light falls on the scene's bounding sphere. */
+void addEnvironment(const Scene& scene, const PackedScene& packed, std::vector<Candidate>& lights) {
+    Candidate light;
+    light.kind = LightKind::Environment;
+    light.weight = glm::pi<double>() * square(boundingRadius(scene)) * packed.environmentPower;
+    lights.push_back(light);
 }
 
 glm::vec4 texel(const glm::dvec3& v, float w) {
@@ -139,31 +158,6 @@ glm::vec4 texel(const glm::dvec3& v, std::uint32_t bits) {
 
 }  // namespace
 
-AliasTable aliasTable(std::span<const double> weights) {
-    const std::size_t n = weights.size();
-    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    AliasTable table{std::vector<float>(n, 1.0f), std::vector<std::uint32_t>(n)};
-    std::iota(table.alias.begin(), table.alias.end(), 0u);
-    std::vector<double> share(n);
-    std::vector<std::uint32_t> small, large;
-    for (std::size_t i = 0; i < n; ++i) {
-        share[i] = weights[i] / total * double(n);
-        (share[i] < 1.0 ? small : large).push_back(std::uint32_t(i));
-    }
-    while (!small.empty() && !large.empty()) {
-        const std::uint32_t s = small.back(), l = large.back();
-        small.pop_back();
-        table.threshold[s] = float(share[s]);
-        table.alias[s] = l;
-        share[l] = (share[l] + share[s]) - 1.0;
-        if (share[l] < 1.0) {
-            large.pop_back();
-            small.push_back(l);
-        }
-    }
-    return table;
-}
-
 void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
             const PackOptions& options, PackedScene& packed) {
     std::vector<Candidate> candidates;
@@ -173,6 +167,7 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     for (const Candidate& light : candidates) packed.triangleLights |= light.kind == LightKind::Triangle;
     addPunctual(scene, candidates);
     packed.punctualLights = candidates.size() > areaCount;
+    if (options.sampleSurfaces && !packed.environmentMap.empty()) addEnvironment(scene, packed, candidates);
     packed.lightCount = std::uint32_t(candidates.size());
     if (candidates.empty()) return;
 
@@ -180,10 +175,12 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     for (const Candidate& light : candidates) weights.push_back(light.weight);
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     const AliasTable table = aliasTable(weights);
+    packed.lightBits = table.bits;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         const Candidate& light = candidates[i];
         const bool surface = i < areaCount;
-        const double density = surface ? light.weightPerArea / total : light.weight / total;
+        const double chance = table.chance[i];
+        const double density = surface ? light.weightPerArea / total : chance;
         // Error of a point on the surface from rounding its corners and the sum, along the normal; see
         // shaders/intersection/offset.glsl, which does the same for points that rays find.
         const glm::dvec3 far =
@@ -192,14 +189,22 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
                               glm::abs(light.origin + light.edge1 + light.edge2)));
         const double unit = 0.5 * std::numeric_limits<float>::epsilon();
         const double offset = surface ? 10.0 * unit * glm::dot(glm::abs(light.normal), far) : 0.0;
-        packed.lights.push_back(texel(light.origin, table.threshold[i]));
-        packed.lights.push_back(texel(light.edge1, table.alias[i]));
+        packed.lights.push_back(texel(light.origin, table.slots[i].threshold));
+        packed.lights.push_back(texel(light.edge1, table.slots[i].alias));
         packed.lights.push_back(texel(light.edge2, std::uint32_t(light.kind)));
         packed.lights.push_back({light.radiance, float(light.doubleSided ? -density : density)});
         packed.lights.push_back(texel(light.normal, float(offset)));
-        packed.lights.push_back({glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material),
-                                 float(light.weight / total), 0.0f});
+        packed.lights.push_back(
+            {glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material), float(chance), 0.0f});
+        if (light.kind == LightKind::Environment) packed.environmentMap[0].x = float(chance);
         if (surface) packed.materials[std::size_t(light.material) * kMaterialTexels + 2].x = float(density);
+    }
+    // Slots of the alias table without a light of their own. A single light is taken without a table.
+    for (std::size_t i = candidates.size(); candidates.size() > 1 && i < table.slots.size(); ++i) {
+        packed.lights.push_back(texel(glm::dvec3(0.0), table.slots[i].threshold));
+        packed.lights.push_back(texel(glm::dvec3(0.0), table.slots[i].alias));
+        packed.lights.push_back(texel(glm::dvec3(0.0), std::uint32_t(LightKind::Point)));
+        packed.lights.resize(packed.lights.size() + kLightTexels - 3, glm::vec4(0.0f));
     }
 }
 

@@ -58,7 +58,7 @@ void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, Pack
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
            bytesOf(texcoords) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) + bytesOf(textures) +
-           bytesOf(texels8) + bytesOf(texelsFloat);
+           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap);
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
@@ -69,8 +69,8 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;
     pack::materials(scene, materialUsed, packed);
+    pack::environment(scene, packed);
     pack::lights(scene, positions, surfaces, options, packed);
-    if (scene.environment) packed.environment = scene.environment->radiance;
 
     std::vector<std::uint32_t> order;
     if (options.tree && packed.triangleCount > 0) {
@@ -94,8 +94,6 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
         packed.triangles.push_back(withBits(positions[g * 3 + 2], surfaces[g].material));
     }
     nameSkipped(scene, materialUsed, packed);
-    if (scene.environment && scene.environment->image >= 0)
-        packed.skipped.emplace_back("environment image", "a constant environment is shown");
     return packed;
 }
 

@@ -8,6 +8,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,7 +25,9 @@ inline constexpr std::uint32_t kBaseColorSlot = 0, kEmissiveSlot = 1;
 inline constexpr std::uint32_t kLightTexels = 6;
 
 /** How a light is sampled; the values are those of shaders/scene/lights.glsl. */
-enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional };
+enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional, Environment };
+/** Texels before the image in PackedScene::environmentMap; shaders/scene/environment.glsl names them. */
+inline constexpr std::uint32_t kEnvironmentHeader = 4;
 
 struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
@@ -56,9 +59,16 @@ struct PackedScene {
     std::vector<glm::uvec4> textures;    ///< offset, width, height, flags
     std::vector<std::uint32_t> texels8;  ///< RGBA8 as stored in the file, R in the low byte
     std::vector<glm::vec4> texelsFloat;  ///< linear float texels
-    glm::vec3 environment{0.0f};         ///< constant radiance of what no geometry covers
+    glm::vec3 environment{0.0f};  ///< radiance of what no geometry covers: constant, or times the image
+    /** Image of the surroundings with the tables that draw from it, empty where they are constant. */
+    std::vector<glm::vec4> environmentMap;
+    std::array<std::uint32_t, 2> environmentSize{0, 0};  ///< texels
+    std::array<std::uint32_t, 2> environmentBits{1, 1};  ///< of the tables over rows, and over a row's cells
+    bool environmentRotated = false;
+    double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
     std::uint32_t triangleCount = 0;
     std::uint32_t lightCount = 0;
+    std::uint32_t lightBits = 1;    ///< the light table has 2^lightBits rows, filler after the lights
     std::uint32_t nodeCount = 0;    ///< of the tree, holes of its blocks included
     std::uint32_t treeDepth = 0;    ///< levels; bounds the traversal stack
     bool areaLights = false;        ///< some light in the table is a surface
@@ -70,7 +80,8 @@ struct PackedScene {
     bool doubleSidedEmission = false;
     /** "WHAT", "WHY" of everything in the scene that kernels do not show (yet). */
     std::vector<std::pair<std::string, std::string>> skipped;
-    double treeSeconds = 0;  ///< time to build the tree
+    std::vector<std::string> warnings;  ///< what of the scene is not shown as it is given
+    double treeSeconds = 0;             ///< time to build the tree
 
     std::uint64_t bytes() const;
 };
@@ -97,16 +108,11 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
 void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
             const PackOptions& options, PackedScene& packed);
 
+/** The environment, and where it is an image its texels and tables. Before the lights, of which it is one. */
+void environment(const Scene& scene, PackedScene& packed);
+
 /** Mean linear RGB of a texture used as colour. */
 glm::dvec3 meanColor(const TextureImage& image);
-
-/** Vose's alias method: `threshold[i]` is the chance to keep i, else `alias[i]` is taken. Weights are not
- * negative and their sum is positive. */
-struct AliasTable {
-    std::vector<float> threshold;
-    std::vector<std::uint32_t> alias;
-};
-AliasTable aliasTable(std::span<const double> weights);
 }  // namespace pack
 
 }  // namespace helio

@@ -63,6 +63,14 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
     spec["ORTHOGRAPHIC"] = view->orthographic;
     SpecConstants firstSpec = spec;
     firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
+    firstSpec.merge(scene_.environmentConstants());
+    Kernel surfaceKernel = shaders::shadeSurface;
+    std::vector<Binding> surroundings;
+    if (scene_.hasEnvironmentImage()) {
+        surfaceKernel =
+            compileVariant(surfaceKernel, {.defines = {{"ENVIRONMENT_IMAGE", "1"}}, .generated = {}});
+        surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
+    }
 
     ShadeOutput output;
     output.color = graph.buffer("shade.color", {pixels * 16});
@@ -73,7 +81,7 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
     const std::uint32_t lights = scene_.info().lightCount;
     for (std::uint32_t first = 0; first == 0 || first < lights; first += kLightsPerPass) {
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
-        Pass pass = first == 0 ? graph.compute("shade.surface", shaders::shadeSurface, {.spec = firstSpec})
+        Pass pass = first == 0 ? graph.compute("shade.surface", surfaceKernel, {.spec = firstSpec})
                                : graph.compute("shade.lights", shaders::shadeLights, {.spec = spec});
         pass.reads(scene_.bindings(
                        graph, {"uTriangles", "uNormals", "uTexcoords", "uColors", "uMaterials", "uLights",
@@ -85,6 +93,7 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
             });
         if (first == 0)
             pass.reads({{"uEnvironment", environment, Format::RGBA32F}})
+                .reads(surroundings)
                 .overwrites({{"uColor", output.color},
                              {"uAlbedoDepth", output.albedoDepth},
                              {"uNormal", output.normal},
@@ -106,6 +115,9 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
                             "the raster pipeline shades direct light; the path pipeline has all");
         result.emplace_back("gloss and metal", "the raster pipeline shades every surface as Lambertian");
     }
+    if (scene_.hasEnvironmentImage())
+        result.emplace_back("light of the environment's image",
+                            "the raster pipeline shows it behind the scene only");
     result.emplace_back("alpha", "the raster pipeline draws every surface as opaque");
     if (info.texturedEmission && info.areaLights)
         result.emplace_back("texture of emission over a light",

@@ -17,9 +17,13 @@ void main() {
     vec3 radiance = shaded.emission + reflectedLight(shaded);
     vec3 surroundings = vec3(0.0);
     if (HAS_ENVIRONMENT) {
-        // Constant over the hemisphere: irradiance pi L.
         surroundings = texelFetch(uEnvironment, 0).rgb;
+#ifdef ENVIRONMENT_IMAGE
+        surroundings = environmentAt(pixelDirection(pixel)).radiance;
+#else
+        // Constant over the hemisphere: irradiance pi L.
         radiance += shaded.albedo * surroundings;
+#endif
     }
     color[index] = shaded.hit ? vec4(radiance, 1.0) : vec4(surroundings, 0.0);
     albedoDepth[index] = shaded.hit ? vec4(shaded.albedo, shaded.depth) : vec4(0.0);

@@ -57,18 +57,23 @@ std::array<std::uint32_t, 2> parseSize(const std::string& text) {
     return size;
 }
 
+/** Whether the text reads as R,G,B, right or wrong, and not as the name of a file. */
+bool isRadiance(const std::string& text) {
+    return text.find_first_not_of("0123456789+-.,eE") == std::string::npos ||
+           (text.find(',') != std::string::npos && !std::filesystem::exists(text));
+}
+
 /** R,G,B: a constant radiance. */
-Environment parseEnvironment(const std::string& text) {
+Environment parseRadiance(const std::string& text) {
     Environment environment;
     std::string_view rest(text);
     for (int channel = 0; channel < 3; ++channel) {
         const std::size_t comma = rest.find(',');
         if ((comma == std::string_view::npos) != (channel == 2)) {
-            throw CLI::ValidationError("--environment",
-                                       "'" + text + "' is not R,G,B; image environments are not there yet");
+            throw CLI::ValidationError("--environment", "'" + text + "' is neither R,G,B nor a file");
         }
-        const float value = parseNumber<float>(rest.substr(0, comma), "--environment",
-                                               "R,G,B; image environments are not there yet");
+        const float value =
+            parseNumber<float>(rest.substr(0, comma), "--environment", "a radiance of R,G,B or a file");
         if (!(value >= 0) || value > 1e30f) {
             throw CLI::ValidationError("--environment", "'" + text + "' is not a radiance of 0 to 1e30");
         }
@@ -174,7 +179,8 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     RenderOptions& options = arguments.options;
     options.size = parseSize(arguments.size);
     options.nextEventEstimation = !arguments.noNextEvent;
-    if (!arguments.environment.empty()) options.environment = parseEnvironment(arguments.environment);
+    const bool image = !arguments.environment.empty() && !isRadiance(arguments.environment);
+    if (!arguments.environment.empty() && !image) options.environment = parseRadiance(arguments.environment);
     checkPipelineOptions(command, options);
     for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
     for (const std::string& output : {arguments.stats, arguments.graph}) {
@@ -191,9 +197,13 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         return !interrupted();
     };
 
-    const std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display, arguments.load);
+    std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display, arguments.load);
     if (!loaded || interrupted()) return reportNothingWritten();
-    const Scene& scene = *loaded;
+    Scene& scene = *loaded;
+    if (image) {
+        options.environment = Environment{.radiance = glm::vec3(1.0f), .image = int(scene.images.size())};
+        scene.images.push_back(loadTextureImage(arguments.environment));
+    }
     DeviceOptions device;
     device.device = arguments.device;
     device.validation = arguments.validate;
@@ -267,7 +277,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
         ->capture_default_str();
     command->add_option("--animation", options.animation,
                         "Name or index of the animation; default the first; none for the pose of the nodes");
-    command->add_option("--environment", arguments->environment, "R,G,B: constant radiance from everywhere");
+    command->add_option("--environment", arguments->environment,
+                        "R,G,B: constant radiance from everywhere; or a lat-long image file, +Y up");
     command->add_option("--spp", options.samples, "Samples per pixel")
         ->check(CLI::Range(1u, (1u << 24) - 1))
         ->capture_default_str();

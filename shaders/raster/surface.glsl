@@ -29,6 +29,13 @@ PixelGrid pixelGrid() {
     return grid;
 }
 
+/// Unit direction of the ray through a pixel's centre.
+vec3 pixelDirection(ivec2 pixel) {
+    PixelGrid grid = pixelGrid();
+    dvec2 centre = dvec2(pixel) + 0.5LF;
+    return normalize(vec3(ORTHOGRAPHIC ? grid.axis : grid.origin + centre.x * grid.right + centre.y * grid.down));
+}
+
 struct Surface {
     vec3 b;          // barycentrics of v0, v1, v2; within 0..1, sum 1
     vec2 db1, db2;   // derivatives of the second and third over x and y, per pixel

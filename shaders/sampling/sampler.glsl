@@ -88,13 +88,16 @@ FN uvec2 sobolPairBits(PixelSampler s, uint dimension) {
                  bitfieldReverse(scrambleReversed(sobolSecondReversed(index), seedY)));
 }
 
+/// A uniform pair as 32 random bits each: for choices among many, where the 24 bits of a float are too coarse.
+FN uvec2 sampleBits2D(uint kind, PixelSampler s, uint dimension) {
+    if (kind == SAMPLER_SOBOL) return sobolPairBits(s, dimension);
+    uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
+    return uvec2(bits.x, bits.y);
+}
+
 /// A uniform pair in [0, 1)^2.
 FN Vec2 sample2D(uint kind, PixelSampler s, uint dimension) {
-    if (kind == SAMPLER_SOBOL) {
-        uvec2 bits = sobolPairBits(s, dimension);
-        return Vec2(unitFloat(bits.x), unitFloat(bits.y));
-    }
-    uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
+    uvec2 bits = sampleBits2D(kind, s, dimension);
     return Vec2(unitFloat(bits.x), unitFloat(bits.y));
 }
 

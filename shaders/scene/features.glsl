@@ -14,6 +14,7 @@ layout(constant_id = 106) const bool HAS_AREA_LIGHTS = true;        ///< some su
 layout(constant_id = 107) const bool HAS_PUNCTUAL_LIGHTS = true;    ///< point, spot or directional lights
 layout(constant_id = 108) const bool HAS_ENVIRONMENT = true;        ///< rays that miss bring light
 layout(constant_id = 109) const int LIGHT_COUNT = 0;                ///< rows of the light table
+layout(constant_id = 117) const int LIGHT_BITS = 1;                 ///< of the table's alias slots
 layout(constant_id = 110) const int TRIANGLE_COUNT = 0;
 layout(constant_id = 111) const bool HAS_TRIANGLE_LIGHTS = true;    ///< else all area lights are parallelograms
 #endif

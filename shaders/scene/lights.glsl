@@ -3,12 +3,16 @@
 /** @file
  * Sampling a light in proportion to power: one row of an alias table, then a point on it.
  */
+#include "shaders/sampling/hash.glsl"
 #include "shaders/scene/features.glsl"
 #include "shaders/scene/materials.glsl"
+#ifdef ENVIRONMENT_IMAGE
+#include "shaders/scene/environment.glsl"
+#endif
 
 /**
  * 6 texels a light (kLightTexels):
- * 0: corner or position | chance to keep this row
+ * 0: corner or position | bits of the alias slot's threshold (passes/scene/alias_table.hpp)
  * 1: edge | bits of the row taken otherwise
  * 2: edge (spot: scale and offset of the cone; punctual: z is the range, 0 for none) | bits of the kind
  * 3: radiance (intensity; irradiance) RGB | chance density per area, negative where both faces emit
@@ -18,7 +22,8 @@
  */
 layout(set = 0, binding = 26) uniform usamplerBuffer uLights;
 const int LIGHT_TEXELS = 6;
-const uint LIGHT_TRIANGLE = 0u, LIGHT_PARALLELOGRAM = 1u, LIGHT_POINT = 2u, LIGHT_SPOT = 3u, LIGHT_DIRECTIONAL = 4u;
+const uint LIGHT_TRIANGLE = 0u, LIGHT_PARALLELOGRAM = 1u, LIGHT_POINT = 2u, LIGHT_SPOT = 3u, LIGHT_DIRECTIONAL = 4u,
+           LIGHT_ENVIRONMENT = 5u;
 
 #include "generated.glsl"
 #ifdef UNROLLED_LIGHT
@@ -39,16 +44,16 @@ struct LightSample {
     float density;      ///< over solid angle; 0 for a punctual light, which no ray finds
 };
 
-/** Samples light for a receiver at p. `choice` picks the light, `u` the point on it; all in [0, 1). A sample
- * with zero radiance brings nothing. */
-LightSample sampleLight(vec3 p, float choice, vec2 u) {
+/** Samples light for a receiver at p. `choice` picks the light, `random` the point on it: 32 random bits each. A
+ * sample with zero radiance brings nothing. */
+LightSample sampleLight(vec3 p, uint choice, uvec2 random) {
     int row = 0;
     if (LIGHT_COUNT > 1) {
-        const float scaled = choice * float(LIGHT_COUNT);
-        row = min(int(scaled), LIGHT_COUNT - 1);
-        const float keep = uintBitsToFloat(texelFetch(uLights, row * LIGHT_TEXELS).w);
+        row = int(choice >> (32 - LIGHT_BITS));
+        const uint fraction = choice & ((1u << (32 - LIGHT_BITS)) - 1u);
+        const uint threshold = texelFetch(uLights, row * LIGHT_TEXELS).w;
         const int other = int(texelFetch(uLights, row * LIGHT_TEXELS + 1).w);
-        row = scaled - float(row) < keep ? row : other;
+        row = fraction < threshold ? row : other;
     }
     const int first = row * LIGHT_TEXELS;
     const vec4 corner = uintBitsToFloat(LIGHT_ROW(first, 0));
@@ -61,6 +66,7 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
 
     LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), ivec2(1, 0), 0.0);
     if (HAS_AREA_LIGHTS) {
+        const vec2 u = vec2(unitFloat(random.x), unitFloat(random.y));
         // The unit square folded along its diagonal covers a triangle evenly.
         const bool fold = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE && u.x + u.y > 1.0;
         const vec2 s = fold ? 1.0 - u : u;
@@ -106,6 +112,29 @@ LightSample sampleLight(vec3 p, float choice, vec2 u) {
         }
         result.radiance = squared > 0.0 ? strength.rgb * (attenuation / strength.w) : vec3(0.0);
     }
+#ifdef ENVIRONMENT_IMAGE
+    if (kind == LIGHT_ENVIRONMENT) {
+        const EnvironmentRadiance from = sampleEnvironment(random, result.direction);
+        result.target = result.direction;
+        result.infinite = true;
+        result.triangles = ivec2(1, 0);
+        result.density = from.density * strength.w;
+        result.radiance = result.density > 0.0 ? from.radiance / result.density : vec3(0.0);
+    }
+#endif
     return result;
+}
+
+/** What a ray that leaves the scene brings: `constant` where the environment is no image, else the image's radiance
+ * weighted against sampleLight(). `density`: over solid angle, with which the direction was drawn; negative where
+ * light was not sampled for it. */
+vec3 environmentLight(vec3 direction, float density, vec3 constant) {
+#ifdef ENVIRONMENT_IMAGE
+    const EnvironmentRadiance from = environmentAt(direction);
+    const float sampled = from.density * texelFetch(uEnvironmentMap, 0).x;
+    return from.radiance * (density < 0.0 ? 1.0 : density / (density + sampled));
+#else
+    return constant;
+#endif
 }
 #endif

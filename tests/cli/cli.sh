@@ -64,7 +64,8 @@ for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sa
 done
 expect 'raster takes --spp and --seed' 0 'left out samples' "$program" render sample:cornell --size 16x16 --pipeline raster --spp 64 --seed 3
 check 'raster says that its error is not measured' grep -q '^error    not measured' out.txt
-expect 'bad environment' 2 'R,G,B' "$program" render sample:cornell --environment sky.exr
+expect 'bad environment' 2 'R,G,B' "$program" render sample:cornell --environment 1,2
+expect 'missing environment' 1 'sky.exr' "$program" render sample:cornell --environment sky.exr
 expect 'missing file' 1 'nothere.gltf' "$program" render nothere.gltf
 expect 'unknown sample' 1 'cornell' "$program" render sample:nothere
 expect 'unknown file type' 1 'scene.xyz' "$program" render scene.xyz

@@ -1,10 +1,12 @@
 // The flattened scene: order and ids, mirrored transforms, the light table, what is refused.
+#include "passes/scene/alias_table.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -134,20 +136,40 @@ TEST(PackScene, AnyTwoTextureCoordinateSetsArePacked) {
 TEST(PackScene, AliasTableGivesTheWeights) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform;
-    for (std::size_t n : {1u, 2u, 7u, 1000u}) {
+    for (std::size_t n : {1u, 2u, 7u, 64u, 1000u, 100000u}) {
         std::vector<double> weights(n);
         double total = 0;
         for (double& w : weights) total += w = std::pow(uniform(random), 6);
-        const pack::AliasTable table = pack::aliasTable(weights);
-        std::vector<double> chance(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            EXPECT_GE(table.threshold[i], 0.0f);
-            EXPECT_LE(table.threshold[i], 1.0f);
-            chance[i] += table.threshold[i] / double(n);
-            chance[table.alias[i]] += (1.0 - table.threshold[i]) / double(n);
+        const AliasTable table = aliasTable(weights);
+        ASSERT_EQ(table.slots.size(), std::size_t(1) << table.bits);
+        ASSERT_EQ(table.chance.size(), n);
+        // How many of the 2^32 random words choose each entry.
+        std::vector<std::uint64_t> words(table.slots.size());
+        const std::uint64_t capacity = std::uint64_t(1) << (32 - table.bits);
+        for (std::size_t i = 0; i < table.slots.size(); ++i) {
+            ASSERT_LE(table.slots[i].threshold, capacity);
+            words[i] += table.slots[i].threshold;
+            words.at(table.slots[i].alias) += capacity - table.slots[i].threshold;
         }
-        for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(chance[i], weights[i] / total, 1e-7) << i;
+        for (std::size_t i = 0; i < words.size(); ++i)
+            ASSERT_EQ(double(words[i]), i < n ? std::ldexp(table.chance[i], 32) : 0.0) << i << " of " << n;
+        // Rounded down to whole words, at least one; the largest takes what is left.
+        for (std::size_t i = 0; i < n; ++i)
+            ASSERT_NEAR(table.chance[i], weights[i] / total, std::ldexp(double(n) + 1, -32)) << i;
+        ASSERT_GT(*std::ranges::min_element(table.chance), 0.0);
     }
+}
+
+TEST(PackScene, AliasTablesOfExtremeWeights) {
+    EXPECT_EQ(aliasTable(std::vector<double>{0.0, 0.0}).chance, (std::vector<double>{0.5, 0.5}));
+    EXPECT_EQ(aliasTable(std::vector<double>{3.0}).chance, (std::vector<double>{1.0}));
+    EXPECT_EQ(aliasTable(std::vector<double>{0.0, 1e300, 0.0}).chance, (std::vector<double>{0.0, 1.0, 0.0}));
+    // A million that are far too weak for a word of their own still get one.
+    std::vector<double> weights(1000000, 1e-30);
+    weights[77] = 1e30;
+    const AliasTable table = aliasTable(weights);
+    EXPECT_EQ(table.chance[0], 0x1p-32);
+    EXPECT_EQ(table.chance[77], 1.0 - 999999 * 0x1p-32);
 }
 
 TEST(PackScene, BadInputIsRefused) {

@@ -243,7 +243,11 @@ struct Node {
 /** Light from everywhere that geometry does not cover. */
 struct Environment {
     glm::vec3 radiance{0.0f};  ///< constant, or multiplies the image
-    int image = -1;            ///< lat-long, into Scene::images; -1 for constant
+    /** Lat-long, into Scene::images; -1 for constant. +Y up, u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi
+     * from the top; 8 and 16 bits are sRGB-encoded, floats linear. */
+    int image = -1;
+    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< of the image in the world
+    bool operator==(const Environment&) const = default;
 };
 
 /** A mesh placed in the world: one per node that holds a mesh (or one per Node::copies), in depth-first order
@@ -302,6 +306,10 @@ struct Scene {
     Bounds bounds() const;
     std::uint64_t triangleCount() const;
 };
+
+/** Reads an image file of any known format as a scene holds it: 8 or 16 bits as stored, all else as floats.
+ * What Environment::image or a texture wants. Throws InputError naming the file. */
+TextureImage loadTextureImage(const std::filesystem::path& file);
 
 /** State of a running load. */
 struct LoadProgress {

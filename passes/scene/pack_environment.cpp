@@ -1,0 +1,171 @@
+#include "passes/scene/alias_table.hpp"
+#include "passes/scene/packed_scene.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/image.hpp>
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace helio::pack {
+namespace {
+
+/** Most texels of an environment, so that it fits a texel buffer with its tables. */
+constexpr std::uint64_t kMostTexels = std::uint64_t(1) << 26;
+
+/** Linear radiance of an image's texels. */
+std::vector<glm::vec3> linearTexels(const TextureImage& image) {
+    const std::size_t count = std::size_t(image.width) * image.height;
+    std::vector<glm::vec3> texels(count);
+    std::visit(
+        [&](const auto& values) {
+            using T = typename std::decay_t<decltype(values)>::value_type;
+            for (std::size_t i = 0; i < count; ++i)
+                for (glm::length_t c = 0; c < 3; ++c) {
+                    const T value = values[i * 4 + std::size_t(c)];
+                    if constexpr (std::is_same_v<T, float>)
+                        texels[i][c] = value;
+                    else
+                        texels[i][c] =
+                            float(srgbDecode(double(value) / double(std::numeric_limits<T>::max())));
+                }
+        },
+        image.texels);
+    return texels;
+}
+
+/** Replaces what is no radiance: NaN and negative values by 0, infinite ones by the largest finite one (a sun
+ * that was too bright for its file). Returns how many of each. */
+std::array<std::uint64_t, 3> clean(std::vector<glm::vec3>& texels) {
+    float largest = 0.0f;
+    for (const glm::vec3& texel : texels)
+        for (glm::length_t c = 0; c < 3; ++c)
+            if (std::isfinite(texel[c])) largest = std::max(largest, texel[c]);
+    std::array<std::uint64_t, 3> bad{};
+    for (glm::vec3& texel : texels)
+        for (glm::length_t c = 0; c < 3; ++c) {
+            float& value = texel[c];
+            if (std::isnan(value)) {
+                ++bad[0];
+                value = 0.0f;
+            } else if (value < 0.0f) {
+                ++bad[1];
+                value = 0.0f;
+            } else if (std::isinf(value)) {
+                ++bad[2];
+                value = largest;
+            }
+        }
+    return bad;
+}
+
+/** sin^2 of half the angle from the nearer pole, of the cells' boundary at `angle` from the top. */
+double poleDistance(double angle, bool top) {
+    const double s = top ? std::sin(0.5 * angle) : std::cos(0.5 * angle);
+    return s * s;
+}
+
+glm::vec4 fromBits(std::uint32_t x, std::uint32_t y, float z, float w) {
+    return {glm::uintBitsToFloat(x), glm::uintBitsToFloat(y), z, w};
+}
+
+}  // namespace
+
+void environment(const Scene& scene, PackedScene& packed) {
+    if (!scene.environment) return;
+    packed.environment = scene.environment->radiance;
+    if (scene.environment->image < 0 || packed.environment == glm::vec3(0.0f)) return;
+    const TextureImage& image = scene.images[std::size_t(scene.environment->image)];
+    const std::string place = fmt::format("image {}{}", scene.environment->image,
+                                          image.name.empty() ? "" : " '" + image.name + "'");
+    const std::uint32_t w = image.width, h = image.height;
+    if (std::uint64_t(w) * h > kMostTexels)
+        throw InputError(scene.name, place,
+                         fmt::format("an environment of {} x {} texels is too large", w, h),
+                         fmt::format("give at most {} texels", kMostTexels));
+    std::vector<glm::vec3> texels = linearTexels(image);
+    const auto [nan, negative, infinite] = clean(texels);
+    if (nan + negative + infinite > 0)
+        packed.warnings.push_back(fmt::format(
+            "{}: {} values of the environment are not numbers, {} are negative and {} infinite: the "
+            "first two are taken as 0, the others as its largest finite value",
+            place, nan, negative, infinite));
+    if (w != 2 * h)
+        packed.warnings.push_back(
+            fmt::format("{}: a latitude-longitude environment is twice as wide as high, this one is {} x {}",
+                        place, w, h));
+    for (glm::vec3& texel : texels) {
+        texel *= packed.environment;
+        if (glm::any(glm::greaterThan(texel, glm::vec3(0x1p100f))))
+            throw InputError(scene.name, place, "the environment is brighter than 2^100 (1.27e30)",
+                             "give the scene another unit of power");
+    }
+
+    // A cell lies between four texel centres; the first and last row of cells end at the poles. Within a cell
+    // the density is bilinear in longitude and in the cosine of the polar angle, in which area is uniform.
+    const auto brightness = [&](std::uint32_t x, std::uint32_t y) {
+        const glm::vec3& t = texels[std::size_t(y) * w + x];
+        return (double(t.x) + double(t.y) + double(t.z)) / 3.0;
+    };
+    const double pi = glm::pi<double>();
+    std::vector<double> rowWeight(h + 1), cells(w);
+    std::vector<glm::vec2> rowGeometry(h + 1);
+    std::vector<AliasSlot> columns;
+    const std::uint32_t columnBits = aliasBits(w);
+    columns.reserve((std::size_t(h) + 1) << columnBits);
+    double total = 0;
+    for (std::uint32_t row = 0; row <= h; ++row) {
+        const double upper = row == 0 ? 0.0 : pi * (row - 0.5) / h;
+        const double lower = row == h ? pi : pi * (row + 0.5) / h;
+        const bool top = row <= h / 2;
+        // Differences of sin^2 without cancelling.
+        const double extent = std::sin(0.5 * (lower - upper)) * std::sin(0.5 * (lower + upper));
+        rowGeometry[row] = glm::vec2(float(poleDistance(upper, top)), float(top ? extent : -extent));
+        const double cellAngle = 2.0 * pi / w * 2.0 * extent;
+        const std::uint32_t above = row == 0 ? 0 : row - 1, below = row == h ? h - 1 : row;
+        for (std::uint32_t x = 0; x < w; ++x) {
+            const std::uint32_t next = x + 1 == w ? 0 : x + 1;
+            cells[x] = 0.25 * cellAngle *
+                       (brightness(x, above) + brightness(next, above) + brightness(x, below) +
+                        brightness(next, below));
+            rowWeight[row] += cells[x];
+        }
+        total += rowWeight[row];
+        const AliasTable table = aliasTable(cells);
+        columns.insert(columns.end(), table.slots.begin(), table.slots.end());
+    }
+    packed.environmentPower = total;
+    if (!(total > 0.0)) {
+        packed.environment = glm::vec3(0.0f);
+        return;
+    }
+    const AliasTable rows = aliasTable(rowWeight);
+    packed.environmentSize = {w, h};
+    packed.environmentBits = {rows.bits, columnBits};
+
+    const glm::mat3 toMap(
+        glm::mat3_cast(glm::inverse(glm::normalize(glm::dquat(scene.environment->rotation)))));
+    packed.environmentRotated = toMap != glm::mat3(1.0f);
+    std::vector<glm::vec4>& out = packed.environmentMap;
+    out.reserve(kEnvironmentHeader + texels.size() + rows.slots.size() + columns.size() / 2);
+    out.emplace_back(0.0f);
+    for (glm::length_t r = 0; r < 3; ++r) out.emplace_back(toMap[0][r], toMap[1][r], toMap[2][r], 0.0f);
+    for (std::uint32_t y = 0; y < h; ++y)
+        for (std::uint32_t x = 0; x < w; ++x)
+            out.emplace_back(texels[std::size_t(y) * w + x], float(brightness(x, y) / total));
+    for (std::uint32_t i = 0; i < rows.slots.size(); ++i) {
+        const glm::vec2 g = i <= h ? rowGeometry[i] : glm::vec2(0.0f);
+        out.push_back(fromBits(rows.slots[i].threshold, rows.slots[i].alias, g.x, g.y));
+    }
+    for (std::size_t i = 0; i < columns.size(); i += 2)
+        out.emplace_back(glm::uintBitsToFloat(columns[i].threshold), glm::uintBitsToFloat(columns[i].alias),
+                         glm::uintBitsToFloat(columns[i + 1].threshold),
+                         glm::uintBitsToFloat(columns[i + 1].alias));
+}
+
+}  // namespace helio::pack
