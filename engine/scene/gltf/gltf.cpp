@@ -1,5 +1,6 @@
 #include "engine/scene/gltf/gltf.hpp"
 
+#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/build.hpp"
 #include "engine/scene/gltf/schema.hpp"
 
@@ -75,6 +76,7 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     gltf::Container container = gltf::readContainer(file);
     gltf::checkSchema(file, container.document);
     gltf::checkExtensions(container, scene);
+    extras::check(file, container.document);
     monitor.report("buffers", 0);
     const gltf::Asset asset(std::move(container));
     gltf::MemoryBudget memory(asset);

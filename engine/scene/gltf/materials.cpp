@@ -1,3 +1,4 @@
+#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/build.hpp"
 
 #include <fmt/format.h>
@@ -82,6 +83,7 @@ public:
         material_.alphaCutoff = float(from.alphaCutoff);
         material_.doubleSided = from.doubleSided;
         readExtensions(from);
+        extras::readMaterial(asset_.document()["materials"][std::size_t(index)], material_);
         return std::move(material_);
     }
 

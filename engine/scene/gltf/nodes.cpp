@@ -1,3 +1,4 @@
+#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/build.hpp"
 
 #include <heliograph/error.hpp>
@@ -214,6 +215,7 @@ void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
              fmt::format("scene {} is shown", shown));
     }
     scene.roots = model.scenes[shown].nodes;
+    extras::readScene(asset.document()["scenes"][shown], scene);
     for (std::size_t i = 0; i < scene.roots.size(); ++i) {
         const int root = scene.roots[i];
         const bool isTwice =

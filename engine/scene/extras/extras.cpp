@@ -1,0 +1,105 @@
+#include "engine/scene/extras/extras.hpp"
+
+#include "engine/scene/extras/schema.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace helio::extras {
+namespace {
+
+using nlohmann::json;
+
+/** The lists of a glTF document, and what the schema calls their elements. */
+constexpr std::pair<const char*, const char*> kinds[] = {
+    {"accessors", "accessor"}, {"animations", "animation"}, {"buffers", "buffer"}, {"cameras", "camera"},
+    {"images", "image"},       {"materials", "material"},   {"meshes", "mesh"},    {"nodes", "node"},
+    {"samplers", "sampler"},   {"scenes", "scene"},         {"skins", "skin"},     {"textures", "texture"},
+};
+
+/** object.extras.heliograph, or nullptr. */
+const json* extrasOf(const json& object) {
+    if (!object.is_object()) return nullptr;
+    const auto extras = object.find("extras");
+    if (extras == object.end() || !extras->is_object()) return nullptr;
+    const auto own = extras->find("heliograph");
+    return own == extras->end() ? nullptr : &*own;
+}
+
+void checkObject(const std::string& file, const std::string& pointer, const std::string& kind,
+                 const json& object) {
+    const json* const own = extrasOf(object);
+    if (own == nullptr) return;
+    const std::string place = pointer + "/extras/heliograph";
+    if (!schema().at("properties").contains(kind)) {
+        throw InputError(file, place,
+                         fmt::format("nothing is known of a{} {}", kind[0] == 'a' ? "n" : "", kind),
+                         "leave it out; see heliograph.schema.json");
+    }
+    if (const auto fault = faultOf({{kind, *own}})) {
+        // The first step names the kind, which the place says already.
+        throw InputError(file,
+                         place + fault->pointer.substr(std::min(fault->pointer.size(), kind.size() + 1)),
+                         fault->fault, "give " + fault->expected);
+    }
+}
+
+glm::vec3 channels(const json& value) {
+    return {value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
+}
+
+Scattering scatteringOf(const json& from) {
+    using Model = Scattering::Model;
+    constexpr std::pair<const char*, Model> models[] = {
+        {"orenNayar", Model::OrenNayar},   {"mirror", Model::Mirror},
+        {"dielectric", Model::Dielectric}, {"thinDielectric", Model::ThinDielectric},
+        {"conductor", Model::Conductor},   {"phong", Model::Phong},
+        {"blinnPhong", Model::BlinnPhong},
+    };
+    Scattering to;
+    for (const auto& [name, model] : models) {
+        if (from["model"] == name) to.model = model;
+    }
+    to.roughness = from.value("roughness", to.roughness);
+    if (from.contains("alpha")) to.alpha = {from["alpha"][0].get<float>(), from["alpha"][1].get<float>()};
+    to.beckmann = from.value("facets", "ggx") == "beckmann";
+    to.schlick = from.value("fresnel", "exact") == "schlick";
+    if (from.contains("n")) to.n = channels(from["n"]);
+    if (from.contains("k")) to.k = channels(from["k"]);
+    to.exponent = from.value("exponent", to.exponent);
+    to.multipleScattering = from.value("multipleScattering", to.multipleScattering);
+    return to;
+}
+
+}  // namespace
+
+void check(const std::string& file, const json& document) {
+    for (const auto& [list, kind] : kinds) {
+        const auto found = document.find(list);
+        if (found == document.end()) continue;
+        for (std::size_t i = 0; i < found->size(); ++i)
+            checkObject(file, fmt::format("/{}/{}", list, i), kind, (*found)[i]);
+    }
+    checkObject(file, "", "asset", document);
+}
+
+void readMaterial(const json& object, Material& material) {
+    const json* const own = extrasOf(object);
+    if (own == nullptr) return;
+    if (own->contains("scattering")) material.scattering = scatteringOf((*own)["scattering"]);
+}
+
+void readScene(const json& object, Scene& scene) {
+    const json* const own = extrasOf(object);
+    if (own == nullptr) return;
+    if (own->contains("environment")) {
+        Environment environment;
+        environment.radiance = channels((*own)["environment"]["radiance"]);
+        scene.environment = environment;
+    }
+}
+
+}  // namespace helio::extras

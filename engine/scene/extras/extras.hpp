@@ -1,0 +1,22 @@
+#pragma once
+/** @file
+ * extras.heliograph, what glTF can't say. heliograph.schema.json describes it; a new property is added there,
+ * to the scene model, and to the reader of its kind in extras.cpp.
+ */
+#include <heliograph/scene.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace helio::extras {
+
+/** Checks every extras.heliograph of a glTF document against the schema. Throws InputError with the JSON
+ * pointer, the fault, and what the schema asks for. Objects are those of the lists that glTF 2.0 names. */
+void check(const std::string& file, const nlohmann::json& document);
+
+/** Reads what check() has accepted. `object` is a material or scene of the document. */
+void readMaterial(const nlohmann::json& object, Material& material);
+void readScene(const nlohmann::json& object, Scene& scene);
+
+}  // namespace helio::extras

@@ -1,0 +1,154 @@
+#include "tests/unit/gltf_support.hpp"
+
+namespace helio::test {
+namespace {
+
+/** The installed schema. */
+json schema() {
+    std::ifstream in(HELIOGRAPH_EXTRAS_SCHEMA);
+    return json::parse(in);
+}
+
+class GltfExtras : public Gltf {
+protected:
+    Scene withScattering(const json& scattering) const {
+        GltfDocument file = GltfDocument::triangle();
+        file.primitive()["material"] = 0;
+        file.doc["materials"] = {{{"extras", {{"heliograph", {{"scattering", scattering}}}}}}};
+        return load(file);
+    }
+};
+
+TEST_F(GltfExtras, MaterialsTakeEveryScatteringModel) {
+    using Model = Scattering::Model;
+    const std::pair<const char*, Model> models[] = {
+        {"orenNayar", Model::OrenNayar},   {"mirror", Model::Mirror},
+        {"dielectric", Model::Dielectric}, {"thinDielectric", Model::ThinDielectric},
+        {"conductor", Model::Conductor},   {"phong", Model::Phong},
+        {"blinnPhong", Model::BlinnPhong}};
+    std::vector<std::string> names;
+    for (const auto& [name, model] : models) {
+        const Scene scene = withScattering({{"model", name}});
+        ASSERT_TRUE(scene.materials[0].scattering.has_value());
+        EXPECT_EQ(scene.materials[0].scattering->model, model);
+        EXPECT_NO_THROW(scene.validate());
+        EXPECT_TRUE(scene.skipped.empty());
+        names.push_back(name);
+    }
+    EXPECT_EQ(schema()["definitions"]["scattering"]["properties"]["model"]["enum"], names)
+        << "the schema and this list";
+}
+
+TEST_F(GltfExtras, MaterialsTakeTheModelsParameters) {
+    const Scattering s = *withScattering({{"model", "conductor"},
+                                          {"roughness", 0.5},
+                                          {"alpha", {0.25, 0.5}},
+                                          {"facets", "beckmann"},
+                                          {"fresnel", "schlick"},
+                                          {"n", {0.2, 0.9, 1.1}},
+                                          {"k", {3.9, 2.5, 2.3}},
+                                          {"exponent", 50}})
+                              .materials[0]
+                              .scattering;
+    EXPECT_EQ(s.roughness, 0.5f);
+    EXPECT_EQ(s.alpha, glm::vec2(0.25f, 0.5f));
+    EXPECT_TRUE(s.beckmann);
+    EXPECT_TRUE(s.schlick);
+    EXPECT_EQ(s.n, glm::vec3(0.2f, 0.9f, 1.1f));
+    EXPECT_EQ(s.k, glm::vec3(3.9f, 2.5f, 2.3f));
+    EXPECT_EQ(s.exponent, 50);
+    EXPECT_TRUE(withScattering({{"model", "conductor"}, {"multipleScattering", true}})
+                    .materials[0]
+                    .scattering->multipleScattering);
+}
+
+/** Every property of the schema has an example, which the loader takes. */
+TEST_F(GltfExtras, ExamplesOfTheSchemaLoad) {
+    const json whole = schema();
+    const json& properties = whole["definitions"]["scattering"]["properties"];
+    for (const auto& [name, property] : properties.items()) {
+        if (name == "model") continue;
+        ASSERT_TRUE(property.contains("examples")) << name;
+        EXPECT_NO_THROW(withScattering({{"model", "dielectric"}, {name, property["examples"][0]}})) << name;
+    }
+}
+
+TEST_F(GltfExtras, ScenesTakeAnEnvironment) {
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["scenes"][0]["extras"]["heliograph"]["environment"] = {{"radiance", {1, 0.5, 0.25}}};
+    const Scene scene = load(file);
+    ASSERT_TRUE(scene.environment.has_value());
+    EXPECT_EQ(scene.environment->radiance, glm::vec3(1, 0.5f, 0.25f));
+    // Only the shown scene's counts.
+    file.doc["scenes"].push_back({{"nodes", {0}}});
+    file.doc["scene"] = 1;
+    EXPECT_FALSE(load(file).environment.has_value());
+}
+
+TEST_F(GltfExtras, OthersExtrasAreNoConcern) {
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["extras"] = 3;
+    file.doc["nodes"][0]["extras"] = "text";
+    file.doc["materials"] = {{{"extras", {{"other", {{"scattering", 7}}}}}}};
+    EXPECT_NO_THROW(load(file));
+}
+
+TEST_F(GltfExtras, FaultsAreNamedWithPointerFaultAndRemedy) {
+    struct Case {
+        const char* pointer;  ///< of what is set
+        json value;
+        const char* place;
+        const char* fault;
+        const char* remedy;
+    };
+    const Case cases[] = {
+        {"/materials/0/extras/heliograph", 3, "/materials/0/extras/heliograph", "type",
+         "a material: scattering"},
+        {"/materials/0/extras/heliograph/scatering", json::object(), "/materials/0/extras/heliograph",
+         "scatering", "a material: scattering"},
+        {"/materials/0/extras/heliograph/scattering/roughness", 0.5,
+         "/materials/0/extras/heliograph/scattering", "model", "an object with model"},
+        {"/materials/0/extras/heliograph/scattering/model", "lambert",
+         "/materials/0/extras/heliograph/scattering/model", "", "one of orenNayar"},
+        {"/materials/0/extras/heliograph/scattering",
+         {{"model", "phong"}, {"exponent", -1}},
+         "/materials/0/extras/heliograph/scattering/exponent",
+         "",
+         "a number from 0 to 1000000"},
+        {"/materials/0/extras/heliograph/scattering",
+         {{"model", "conductor"}, {"n", {1, 2}}},
+         "/materials/0/extras/heliograph/scattering/n",
+         "",
+         "three numbers"},
+        {"/materials/0/extras/heliograph/scattering",
+         {{"model", "conductor"}, {"n", {1, "x", 2}}},
+         "/materials/0/extras/heliograph/scattering/n/1",
+         "type",
+         "three numbers"},
+        {"/scenes/0/extras/heliograph/environment/radiance",
+         {1, -1, 0},
+         "/scenes/0/extras/heliograph/environment/radiance/1",
+         "",
+         "three numbers, red, green and blue"},
+        {"/nodes/0/extras/heliograph", json::object(), "/nodes/0/extras/heliograph", "a node",
+         "leave it out"},
+        {"/extras/heliograph", json::object(), "/extras/heliograph", "an asset", "leave it out"},
+    };
+    for (const Case& fault : cases) {
+        GltfDocument file = GltfDocument::triangle();
+        file.doc["materials"] = {{{"name", "m"}}};
+        file.doc[json::json_pointer(fault.pointer)] = fault.value;
+        try {
+            load(file);
+            ADD_FAILURE() << fault.pointer << " was accepted";
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.place, fault.place) << error.what();
+            EXPECT_NE(error.fault.find(fault.fault), std::string::npos) << error.what();
+            EXPECT_NE(error.remedy.find(fault.remedy), std::string::npos) << error.what();
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace helio::test
