@@ -1,9 +1,9 @@
 #include "engine/scene/bvh.hpp"
 
+#include "engine/scene/bvh_binary.hpp"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <bit>
@@ -15,299 +15,259 @@
 namespace helio {
 namespace {
 
-constexpr int kMaxBins = 64;
-/** Below this many triangles a subtree is one task. */
-constexpr std::uint32_t kTaskTriangles = 4096;
-/** From this level on triangles are split into halves by count, which bounds the depth whatever the input. */
-constexpr int kMaxSahDepth = 48;
-
-struct Box {
+struct Bounds {
     glm::vec3 lower{std::numeric_limits<float>::infinity()};
     glm::vec3 upper{-std::numeric_limits<float>::infinity()};
 
-    void grow(const glm::vec3& p) {
-        lower = glm::min(lower, p);
-        upper = glm::max(upper, p);
+    void grow(const Bounds& other) {
+        lower = glm::min(lower, other.lower);
+        upper = glm::max(upper, other.upper);
     }
-    void grow(const Box& b) {
-        lower = glm::min(lower, b.lower);
-        upper = glm::max(upper, b.upper);
-    }
-    /** Half the surface, in double: the square of 1e30 is no float. 0 for an empty box. */
     double halfArea() const {
-        if (!(lower.x <= upper.x)) return 0.0;
         const glm::dvec3 e = glm::dvec3(upper) - glm::dvec3(lower);
-        return e.x * e.y + e.y * e.z + e.z * e.x;
-    }
-    glm::vec3 centre() const { return 0.5f * lower + 0.5f * upper; }
-};
-
-/** Node of the binary tree. Its subtree lies behind it in the array: the left child next to it, the right one
- * after all nodes the left subtree could have, so that subtrees are built independently. */
-struct BinaryNode {
-    Box box;
-    std::uint32_t first = 0, count = 0;
-    std::uint32_t left = 0, right = 0;  ///< 0 for a leaf
-    bool isLeaf() const { return left == 0; }
-};
-
-struct Bins {
-    std::array<std::array<Box, kMaxBins>, 3> box;
-    std::array<std::array<std::uint32_t, kMaxBins>, 3> count{};
-    void merge(const Bins& other, int bins) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::size_t b = 0; b < std::size_t(bins); ++b) {
-                box[axis][b].grow(other.box[axis][b]);
-                count[axis][b] += other.count[axis][b];
-            }
+        return e.x >= 0 ? e.x * e.y + e.y * e.z + e.z * e.x : 0.0;
     }
 };
 
-class Builder {
-public:
-    Builder(std::span<const glm::vec3> positions, const BvhOptions& options) : options_(options) {
-        const std::uint32_t n = std::uint32_t(positions.size() / 3);
-        boxes_.resize(n);
-        order_.resize(n);
-        nodes_.resize(std::size_t(n) * 2);
-        std::iota(order_.begin(), order_.end(), 0u);
-        forRange(0, n, [&](std::uint32_t i) {
-            for (std::size_t k = 0; k < 3; ++k) boxes_[i].grow(positions[std::size_t(i) * 3 + k]);
-        });
-        BinaryNode& root = nodes_[0];
-        root.first = 0;
-        root.count = n;
-        for (const Box& box : boxes_) root.box.grow(box);
-        split(0, 0);
-    }
-
-    const std::vector<BinaryNode>& nodes() const { return nodes_; }
-    const std::vector<std::uint32_t>& order() const { return order_; }
-
-private:
-    template <typename Body>
-    void forRange(std::uint32_t begin, std::uint32_t end, const Body& body) {
-        if (!options_.parallel || end - begin < kTaskTriangles) {
-            for (std::uint32_t i = begin; i < end; ++i) body(i);
-            return;
-        }
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(begin, end, kTaskTriangles),
-                          [&](const auto& range) {
-                              for (std::uint32_t i = range.begin(); i < range.end(); ++i) body(i);
-                          });
-    }
-
-    /** Bin of a centroid: monotonic in the coordinate, in [0, bins). Doubles, since the ratio of two extents
-     * need not be a float. */
-    int binOf(float coordinate, double lower, double scale) const {
-        const int bin = int((double(coordinate) - lower) * scale);
-        return std::clamp(bin, 0, options_.bins - 1);
-    }
-
-    void fillBins(const Box& centroids, const glm::dvec3& scale, std::uint32_t begin, std::uint32_t end,
-                  Bins& bins) const {
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const Box& box = boxes_[order_[i]];
-            const glm::vec3 centre = box.centre();
-            for (int axis = 0; axis < 3; ++axis) {
-                const std::size_t b =
-                    std::size_t(binOf(centre[axis], double(centroids.lower[axis]), scale[axis]));
-                bins.box[std::size_t(axis)][b].grow(box);
-                ++bins.count[std::size_t(axis)][b];
-            }
-        }
-    }
-
-    /** Minima, maxima and counts: exact in any order, so the parallel sum equals the serial one. */
-    Bins binned(const Box& centroids, const glm::dvec3& scale, std::uint32_t begin, std::uint32_t end) const {
-        Bins bins;
-        if (!options_.parallel || end - begin < 8 * kTaskTriangles) {
-            fillBins(centroids, scale, begin, end, bins);
-            return bins;
-        }
-        return tbb::parallel_reduce(
-            tbb::blocked_range<std::uint32_t>(begin, end, kTaskTriangles), bins,
-            [&](const tbb::blocked_range<std::uint32_t>& range, Bins sum) {
-                fillBins(centroids, scale, range.begin(), range.end(), sum);
-                return sum;
-            },
-            [&](Bins a, const Bins& b) {
-                a.merge(b, options_.bins);
-                return a;
-            });
-    }
-
-    /** Splits a node's triangles in place; returns the size of the left part, or 0 for a leaf. */
-    std::uint32_t partition(const BinaryNode& node, int depth) {
-        const auto begin = order_.begin() + node.first, end = begin + node.count;
-        if (node.count == 1) return 0;
-        Box centroids;
-        for (auto i = begin; i != end; ++i) centroids.grow(boxes_[*i].centre());
-        const glm::dvec3 extent = glm::dvec3(centroids.upper) - glm::dvec3(centroids.lower);
-
-        int bestAxis = -1, bestBin = 0;
-        double bestCost = std::numeric_limits<double>::infinity();
-        glm::dvec3 scale(0.0);
-        if (depth < kMaxSahDepth && (extent.x > 0 || extent.y > 0 || extent.z > 0)) {
-            for (int axis = 0; axis < 3; ++axis)
-                scale[axis] = extent[axis] > 0 ? double(options_.bins) / extent[axis] : 0.0;
-            const Bins bins = binned(centroids, scale, node.first, node.first + node.count);
-            for (int axis = 0; axis < 3; ++axis) {
-                if (!(extent[axis] > 0)) continue;
-                sweep(bins.box[std::size_t(axis)], bins.count[std::size_t(axis)], axis, bestAxis, bestBin,
-                      bestCost);
-            }
-        }
-        if (node.count <= Bvh::kMaxLeafTriangles) {
-            // Coincident triangles gain nothing from being split.
-            const double area = node.box.halfArea();
-            if (bestAxis < 0 || bestCost + options_.traversalCost * area >= double(node.count) * area)
-                return 0;
-        }
-        if (bestAxis >= 0) {
-            const double lower = double(centroids.lower[bestAxis]), s = scale[bestAxis];
-            const auto middle = std::partition(begin, end, [&](std::uint32_t triangle) {
-                return binOf(boxes_[triangle].centre()[bestAxis], lower, s) < bestBin;
-            });
-            if (middle != begin && middle != end) return std::uint32_t(middle - begin);
-        }
-        return node.count / 2;
-    }
-
-    void sweep(const std::array<Box, kMaxBins>& box, const std::array<std::uint32_t, kMaxBins>& count,
-               int axis, int& bestAxis, int& bestBin, double& bestCost) const {
-        std::array<double, kMaxBins> rightCost{};
-        Box sum;
-        std::uint32_t n = 0;
-        for (int b = options_.bins - 1; b > 0; --b) {
-            sum.grow(box[std::size_t(b)]);
-            n += count[std::size_t(b)];
-            rightCost[std::size_t(b)] = n > 0 ? sum.halfArea() * double(n) : -1.0;
-        }
-        sum = {};
-        n = 0;
-        for (int b = 1; b < options_.bins; ++b) {
-            sum.grow(box[std::size_t(b - 1)]);
-            n += count[std::size_t(b - 1)];
-            if (n == 0 || rightCost[std::size_t(b)] < 0.0) continue;
-            const double cost = sum.halfArea() * double(n) + rightCost[std::size_t(b)];
-            if (cost < bestCost) {
-                bestCost = cost;
-                bestAxis = axis;
-                bestBin = b;
-            }
-        }
-    }
-
-    void split(std::uint32_t index, int depth) {
-        BinaryNode& node = nodes_[index];
-        const std::uint32_t leftCount = partition(node, depth);
-        if (leftCount == 0) return;
-        node.left = index + 1;
-        node.right = index + 2 * leftCount;
-        BinaryNode& left = nodes_[node.left];
-        BinaryNode& right = nodes_[node.right];
-        left.first = node.first;
-        left.count = leftCount;
-        right.first = node.first + leftCount;
-        right.count = node.count - leftCount;
-        for (std::uint32_t i = 0; i < left.count; ++i) left.box.grow(boxes_[order_[left.first + i]]);
-        for (std::uint32_t i = 0; i < right.count; ++i) right.box.grow(boxes_[order_[right.first + i]]);
-        if (options_.parallel && node.count >= kTaskTriangles) {
-            tbb::parallel_invoke([&] { split(node.left, depth + 1); }, [&] { split(node.right, depth + 1); });
-        } else {
-            split(node.left, depth + 1);
-            split(node.right, depth + 1);
-        }
-    }
-
-    BvhOptions options_;
-    std::vector<Box> boxes_;
-    std::vector<std::uint32_t> order_;
-    std::vector<BinaryNode> nodes_;
+/** A wide node before it is written: its children in no order yet. */
+struct WideNode {
+    std::uint32_t binary = 0;         ///< node of the binary tree
+    std::uint32_t first = 0;          ///< place of its first triangle in the binary tree's order
+    std::uint32_t place = 0;          ///< in Bvh::nodes
+    std::uint32_t firstChild = 0;     ///< block of its inner children
+    std::uint32_t firstTriangle = 0;  ///< in Bvh::order
+    std::uint32_t innerIndex = 0;  ///< among the wide nodes, of its first inner child; more follow in order
+    std::uint32_t children = 0;
+    std::array<std::uint32_t, 8> child{};       ///< nodes of the binary tree
+    std::array<std::uint32_t, 8> childFirst{};  ///< their first triangles
 };
 
-/** Up to eight descendants of a binary node that become children of one wide node: the largest box that is
- * not a leaf is opened until eight are there. */
-std::vector<std::uint32_t> childrenOf(const std::vector<BinaryNode>& nodes, std::uint32_t index) {
-    if (nodes[index].isLeaf()) return {index};
-    std::vector<std::uint32_t> children = {nodes[index].left, nodes[index].right};
-    while (children.size() < 8) {
-        int largest = -1;
-        double area = -1.0;
-        for (std::size_t k = 0; k < children.size(); ++k) {
-            const BinaryNode& child = nodes[children[k]];
-            if (!child.isLeaf() && child.box.halfArea() > area) {
-                area = child.box.halfArea();
-                largest = int(k);
-            }
-        }
-        if (largest < 0) break;
-        const BinaryNode& opened = nodes[children[std::size_t(largest)]];
-        children[std::size_t(largest)] = opened.left;
-        children.push_back(opened.right);
-    }
-    return children;
+Bounds boundsOf(const bvh::BinaryNode& node) {
+    return {node.lower, node.upper};
 }
 
-/** Gives every child the free slot whose octant it lies towards most, best pair first; -1 for a free slot. */
-std::array<int, 8> assignSlots(const std::vector<BinaryNode>& nodes, const Box& parent,
-                               const std::vector<std::uint32_t>& children) {
-    std::array<int, 8> slots;
-    slots.fill(-1);
-    std::vector<bool> placed(children.size(), false);
-    const glm::dvec3 middle(parent.centre());
-    for (std::size_t round = 0; round < children.size(); ++round) {
-        double best = -std::numeric_limits<double>::infinity();
-        int bestSlot = -1, bestChild = -1;
-        for (int s = 0; s < 8; ++s) {
-            if (slots[std::size_t(s)] >= 0) continue;
-            for (std::size_t k = 0; k < children.size(); ++k) {
-                if (placed[k]) continue;
-                const glm::dvec3 d = glm::dvec3(nodes[children[k]].box.centre()) - middle;
-                const double towards =
-                    ((s & 1) != 0 ? d.x : -d.x) + ((s & 2) != 0 ? d.y : -d.y) + ((s & 4) != 0 ? d.z : -d.z);
-                if (towards > best) {
-                    best = towards;
-                    bestSlot = s;
-                    bestChild = int(k);
-                }
+/** Appends the subtree's boxes, at most `slots` of them. */
+void gather(const bvh::BinaryTree& tree, std::uint32_t index, std::uint32_t first, std::size_t slots,
+            WideNode& wide) {
+    while (slots > 1 && tree.cuts(index)[slots] == 0) --slots;
+    if (slots == 1) {
+        wide.child[wide.children] = index;
+        wide.childFirst[wide.children++] = first;
+        return;
+    }
+    const std::size_t forLeft = tree.cuts(index)[slots];
+    const std::uint32_t left = tree.left(index), right = tree.node(index).right;
+    gather(tree, left, first, forLeft, wide);
+    gather(tree, right, first + tree.node(left).count, slots - forLeft, wide);
+}
+
+/** Gives every child the free slot whose octant it lies towards most, best pair first. */
+std::array<std::uint8_t, 8> slotsOf(const Bounds& parent, std::span<const Bounds> children) {
+    std::array<std::array<float, 8>, 8> towards;
+    // Halved first: sums near the largest float stay finite.
+    const glm::vec3 middle = 0.5f * parent.lower + 0.5f * parent.upper;
+    for (std::size_t k = 0; k < children.size(); ++k) {
+        const glm::vec3 d = 0.25f * (0.5f * children[k].lower + 0.5f * children[k].upper - middle);
+        for (std::size_t s = 0; s < 8; ++s)
+            towards[k][s] =
+                ((s & 1) != 0 ? d.x : -d.x) + ((s & 2) != 0 ? d.y : -d.y) + ((s & 4) != 0 ? d.z : -d.z);
+    }
+    std::array<std::uint8_t, 8> slots{};
+    std::uint32_t freeSlots = 0xff, open = (1u << children.size()) - 1u;
+    while (open != 0) {
+        float best = -std::numeric_limits<float>::infinity();
+        std::size_t bestChild = 0, bestSlot = 0;
+        for (std::uint32_t c = open; c != 0; c &= c - 1)
+            for (std::uint32_t f = freeSlots; f != 0; f &= f - 1) {
+                const std::size_t k = std::size_t(std::countr_zero(c)), s = std::size_t(std::countr_zero(f));
+                if (towards[k][s] <= best) continue;
+                best = towards[k][s];
+                bestChild = k;
+                bestSlot = s;
             }
-        }
-        slots[std::size_t(bestSlot)] = bestChild;
-        placed[std::size_t(bestChild)] = true;
+        slots[bestChild] = std::uint8_t(bestSlot);
+        open &= ~(1u << bestChild);
+        freeSlots &= ~(1u << bestSlot);
     }
     return slots;
+}
+
+/** Of a biased exponent, 1 to 254. */
+double powerOfTwo(std::uint8_t exponent) {
+    return double(std::bit_cast<float>(std::uint32_t(exponent) << 23));
 }
 
 /** Least biased exponent with which 255 steps from `lower` reach `upper`. */
 std::uint8_t exponentFor(float lower, float upper) {
     const double extent = double(upper) - double(lower);
-    int exponent = extent > 0 ? int(std::ceil(std::log2(extent / 255.0))) : -126;
-    exponent = std::clamp(exponent - 1, -126, 127);
-    while (exponent < 127 && double(lower) + 255.0 * std::ldexp(1.0, exponent) < double(upper)) ++exponent;
-    return std::uint8_t(exponent + 127);
+    int exponent = -126;
+    if (extent > 0) {
+        std::frexp(extent / 255.0, &exponent);  // extent / 255 lies in [2^(e - 1), 2^e)
+        exponent = std::clamp(exponent - 1, -126, 127);
+    }
+    std::uint8_t biased = std::uint8_t(exponent + 127);
+    while (biased < 254 && double(lower) + 255.0 * powerOfTwo(biased) < double(upper)) ++biased;
+    return biased;
 }
 
-/** Quantises a child's box so that the decoded box holds it: checked in double, not hoped for. */
-void quantise(const Box& child, int slot, BvhNode& node) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double origin = double(node.origin[std::size_t(axis)]);
-        const double step = std::ldexp(1.0, int(node.exponent[std::size_t(axis)]) - 127);
-        const double lower = double(child.lower[axis]), upper = double(child.upper[axis]);
-        double low = std::clamp(std::floor((lower - origin) / step), 0.0, 255.0);
-        double high = std::clamp(std::ceil((upper - origin) / step), 0.0, 255.0);
-        while (low > 0.0 && origin + low * step > lower) low -= 1.0;
-        while (high < 255.0 && origin + high * step < upper) high += 1.0;
-        assert(origin + low * step <= lower && origin + high * step >= upper);
-        node.planes[std::size_t(axis)][std::size_t(slot)] = std::uint8_t(low);
-        node.planes[std::size_t(axis)][std::size_t(slot) + 8] = std::uint8_t(high);
+void setFrame(const Bounds& bounds, BvhNode& node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.origin[axis] = bounds.lower[int(axis)];
+        node.exponent[axis] = exponentFor(bounds.lower[int(axis)], bounds.upper[int(axis)]);
     }
 }
 
-struct Pending {
-    std::uint32_t binary, wide, level;
+/** Quantises a child's box so that the decoded box holds it: checked in double, not hoped for. */
+void quantise(const Bounds& child, std::size_t slot, BvhNode& node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double origin = double(node.origin[axis]);
+        const double step = powerOfTwo(node.exponent[axis]), perUnit = 1.0 / step;
+        const double lower = double(child.lower[int(axis)]), upper = double(child.upper[int(axis)]);
+        double low = std::clamp(std::floor((lower - origin) * perUnit), 0.0, 255.0);
+        double high = std::clamp(std::ceil((upper - origin) * perUnit), 0.0, 255.0);
+        while (low > 0.0 && origin + low * step > lower) low -= 1.0;
+        while (high < 255.0 && origin + high * step < upper) high += 1.0;
+        assert(origin + low * step <= lower && origin + high * step >= upper);
+        node.planes[axis][slot] = std::uint8_t(low);
+        node.planes[axis][slot + 8] = std::uint8_t(high);
+    }
+}
+
+/** Children of all wide nodes, level by level, with the places of blocks and triangles. */
+class Collapse {
+public:
+    Collapse(const bvh::BinaryTree& tree, const BvhOptions& options) : tree_(tree), options_(options) {
+        wide_.push_back({.binary = 0, .first = 0, .place = 0});
+        std::uint32_t places = 1, triangles = 0;
+        for (std::size_t begin = 0; begin < wide_.size();) {
+            const std::size_t end = wide_.size();
+            forRange(begin, end, [&](std::size_t w) {
+                WideNode& wide = wide_[w];
+                if (tree_.isLeaf(wide.binary))
+                    gather(tree_, wide.binary, wide.first, 1, wide);
+                else
+                    gather(tree_, wide.binary, wide.first, 8, wide);
+            });
+            for (std::size_t w = begin; w < end; ++w) {
+                wide_[w].firstTriangle = triangles;
+                wide_[w].innerIndex = std::uint32_t(wide_.size());
+                wide_[w].firstChild = places;
+                const WideNode wide = wide_[w];  // the vector grows
+                for (std::uint32_t k = 0; k < wide.children; ++k) {
+                    if (tree_.isLeaf(wide.child[k]))
+                        triangles += tree_.node(wide.child[k]).count;
+                    else
+                        wide_.push_back({.binary = wide.child[k], .first = wide.childFirst[k]});
+                }
+                if (wide_.size() > wide.innerIndex) places += 8;
+            }
+            begin = end;
+            ++depth_;
+        }
+        places_ = places;
+    }
+
+    Bvh write() {
+        Bvh result;
+        result.nodes.resize(places_);
+        result.order.resize(tree_.node(0).count);
+        result.depth = depth_;
+        result.usedNodes = std::uint32_t(wide_.size());
+        std::vector<std::array<std::uint8_t, 8>> slots(wide_.size());
+        forRange(0, wide_.size(), [&](std::size_t w) {
+            const WideNode& wide = wide_[w];
+            std::array<Bounds, 8> boxes;
+            for (std::uint32_t k = 0; k < wide.children; ++k) boxes[k] = boundsOf(tree_.node(wide.child[k]));
+            slots[w] = slotsOf(boundsOf(tree_.node(wide.binary)), std::span(boxes).first(wide.children));
+            std::uint32_t inner = wide.innerIndex;
+            for (std::uint32_t k = 0; k < wide.children; ++k)
+                if (!tree_.isLeaf(wide.child[k])) wide_[inner++].place = wide.firstChild + slots[w][k];
+        });
+        std::vector<double> costs(wide_.size());
+        forRange(0, wide_.size(), [&](std::size_t w) { costs[w] = writeNode(wide_[w], slots[w], result); });
+        const double rootArea = boundsOf(tree_.node(0)).halfArea();
+        // In order: the same sum however many threads there are.
+        if (rootArea > 0) result.cost = std::accumulate(costs.begin(), costs.end(), 0.0) / rootArea;
+        return result;
+    }
+
+private:
+    /** Returns the node's share of the tree's cost, in surface. */
+    double writeNode(const WideNode& wide, const std::array<std::uint8_t, 8>& slots, Bvh& result) const {
+        BvhNode node{};
+        const Bounds bounds = boundsOf(tree_.node(wide.binary));
+        double cost = bounds.halfArea();
+        setFrame(bounds, node);
+        node.firstChild = wide.firstChild;
+        node.firstTriangle = wide.firstTriangle;
+        for (auto& planes : node.planes) std::fill_n(planes.begin(), 8, std::uint8_t(255));
+        std::array<int, 8> childAt;
+        childAt.fill(-1);
+        for (std::uint32_t k = 0; k < wide.children; ++k) childAt[slots[k]] = int(k);
+        std::uint32_t triangle = wide.firstTriangle;
+        for (std::size_t s = 0; s < 8; ++s) {
+            if (childAt[s] < 0) continue;
+            const std::size_t k = std::size_t(childAt[s]);
+            const bvh::BinaryNode& child = tree_.node(wide.child[k]);
+            quantise(boundsOf(child), s, node);
+            if (!tree_.isLeaf(wide.child[k])) {
+                node.slots |= 1u << s;
+                continue;
+            }
+            node.slots |= ((1u << child.count) - 1u) << (8 + 3 * s);
+            cost += boundsOf(child).halfArea() * child.count * options_.triangleCost;
+            for (std::uint32_t i = 0; i < child.count; ++i)
+                result.order[triangle++] = tree_.triangle(wide.childFirst[k] + i);
+        }
+        result.nodes[wide.place] = node;
+        return cost;
+    }
+
+    void forRange(std::size_t begin, std::size_t end, const auto& body) const {
+        if (!options_.parallel) {
+            for (std::size_t i = begin; i < end; ++i) body(i);
+            return;
+        }
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 256), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+        });
+    }
+
+    const bvh::BinaryTree& tree_;
+    BvhOptions options_;
+    std::vector<WideNode> wide_;
+    std::uint32_t places_ = 0, depth_ = 0;
 };
+
+/** Box of a node whose descendants have theirs; sets the node's frame and its children's planes. */
+Bounds refitNode(Bvh& tree, std::uint32_t index, std::span<const glm::vec3> positions,
+                 const BvhOptions& options, double& area) {
+    BvhNode& node = tree.nodes[index];
+    std::array<Bounds, 8> children;
+    Bounds all;
+    for (int s = 0; s < 8; ++s) {
+        Bounds& child = children[std::size_t(s)];
+        const std::uint32_t count = node.triangleCount(s);
+        if (node.isInner(s)) {
+            child = refitNode(tree, node.firstChild + std::uint32_t(s), positions, options, area);
+        } else if (count > 0) {
+            for (std::uint32_t k = 0; k < count; ++k)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const glm::vec3& p =
+                        positions[std::size_t(tree.order[node.triangleBegin(s) + k]) * 3 + c];
+                    child.grow({p, p});
+                }
+            area += child.halfArea() * count * options.triangleCost;
+        }
+        all.grow(child);
+    }
+    setFrame(all, node);
+    for (int s = 0; s < 8; ++s)
+        if (node.isInner(s) || node.triangleCount(s) > 0)
+            quantise(children[std::size_t(s)], std::size_t(s), node);
+    area += all.halfArea();
+    return all;
+}
 
 }  // namespace
 
@@ -315,7 +275,7 @@ BvhBox childBox(const BvhNode& node, int slot) {
     BvhBox box;
     for (int axis = 0; axis < 3; ++axis) {
         const std::size_t a = std::size_t(axis), s = std::size_t(slot);
-        const double step = std::ldexp(1.0, int(node.exponent[a]) - 127);
+        const double step = powerOfTwo(node.exponent[a]);
         box.lower[axis] = double(node.origin[a]) + double(node.planes[a][s]) * step;
         box.upper[axis] = double(node.origin[a]) + double(node.planes[a][s + 8]) * step;
     }
@@ -324,56 +284,18 @@ BvhBox childBox(const BvhNode& node, int slot) {
 
 Bvh buildBvh(std::span<const glm::vec3> positions, const BvhOptions& options) {
     assert(positions.size() % 3 == 0);
-    assert(options.bins >= 2 && options.bins <= kMaxBins);
-    Bvh result;
-    if (positions.empty()) return result;
-    const Builder builder(positions, options);
-    const std::vector<BinaryNode>& binary = builder.nodes();
-    const double rootArea = binary[0].box.halfArea();
+    assert(options.bins >= 8 && options.bins <= BvhOptions::kMaxBins);
+    if (positions.empty()) return {};
+    const bvh::BinaryTree tree(positions, options);
+    return Collapse(tree, options).write();
+}
 
-    result.order.reserve(positions.size() / 3);
-    result.nodes.emplace_back();
-    std::vector<Pending> queue = {{0, 0, 1}};
-    for (std::size_t next = 0; next < queue.size(); ++next) {
-        const Pending item = queue[next];
-        const Box& box = binary[item.binary].box;
-        const std::vector<std::uint32_t> children = childrenOf(binary, item.binary);
-        const std::array<int, 8> slots = assignSlots(binary, box, children);
-        ++result.usedNodes;
-        result.depth = std::max(result.depth, item.level);
-
-        BvhNode node{};
-        for (int axis = 0; axis < 3; ++axis) {
-            node.origin[std::size_t(axis)] = box.lower[axis];
-            node.exponent[std::size_t(axis)] = exponentFor(box.lower[axis], box.upper[axis]);
-        }
-        const bool anyInner =
-            std::ranges::any_of(children, [&](std::uint32_t child) { return !binary[child].isLeaf(); });
-        if (anyInner) {
-            node.firstChild = std::uint32_t(result.nodes.size());
-            result.nodes.resize(result.nodes.size() + 8);
-        }
-        node.firstTriangle = std::uint32_t(result.order.size());
-        for (auto& planes : node.planes) std::fill_n(planes.begin(), 8, std::uint8_t(255));
-        for (int s = 0; s < 8; ++s) {
-            if (slots[std::size_t(s)] < 0) continue;
-            const std::uint32_t index = children[std::size_t(slots[std::size_t(s)])];
-            const BinaryNode& child = binary[index];
-            quantise(child.box, s, node);
-            if (child.isLeaf()) {
-                node.slots |= ((1u << child.count) - 1u) << (8 + 3 * s);
-                for (std::uint32_t i = 0; i < child.count; ++i)
-                    result.order.push_back(builder.order()[child.first + i]);
-                if (rootArea > 0) result.cost += child.box.halfArea() / rootArea * double(child.count);
-            } else {
-                node.slots |= 1u << s;
-                queue.push_back({index, node.firstChild + std::uint32_t(s), item.level + 1});
-            }
-        }
-        if (rootArea > 0) result.cost += box.halfArea() / rootArea * options.traversalCost;
-        result.nodes[item.wide] = node;
-    }
-    return result;
+void refitBvh(Bvh& tree, std::span<const glm::vec3> positions, const BvhOptions& options) {
+    assert(positions.size() == tree.order.size() * 3);
+    if (tree.nodes.empty()) return;
+    double area = 0;
+    const double rootArea = refitNode(tree, 0, positions, options, area).halfArea();
+    tree.cost = rootArea > 0 ? area / rootArea : 0;
 }
 
 }  // namespace helio

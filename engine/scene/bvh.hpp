@@ -1,9 +1,8 @@
 #pragma once
 /** @file
- * Bounding volume hierarchy over triangles: a binary tree split by the surface area heuristic (Wald, "On fast
- * construction of SAH-based bounding volume hierarchies", 2007), collapsed to eight children a node with
- * boxes quantised to 8 bits (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through
- * compressed wide BVHs", 2017). Scale-free: no absolute epsilon; coordinates from 1e-30 to 1e30 work.
+ * Bounding volume hierarchy over triangles: a binary tree (bvh_binary.hpp), collapsed to eight children a
+ * node with boxes quantised to 8 bits (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs
+ * through compressed wide BVHs", 2017). Scale-free: no absolute epsilon; coordinates from 1e-30 to 1e30 work.
  */
 #include <glm/glm.hpp>
 
@@ -47,9 +46,10 @@ struct BvhNode {
 static_assert(sizeof(BvhNode) == 80);
 
 struct BvhOptions {
-    int bins = 24;             ///< of the binned split, 2 to 64
-    double traversalCost = 1;  ///< of a binary node, in triangle tests
-    bool parallel = true;      ///< the result does not depend on it
+    static constexpr int kMaxBins = 32;
+    int bins = 24;              ///< of the binned split, 8 to kMaxBins; nodes of few triangles take fewer
+    double triangleCost = 0.3;  ///< of a triangle test, in visits of a node
+    bool parallel = true;       ///< the result does not depend on it
 };
 
 struct Bvh {
@@ -58,12 +58,18 @@ struct Bvh {
     std::vector<std::uint32_t> order;  ///< triangle at each place; a permutation
     std::uint32_t depth = 0;           ///< levels of nodes
     std::uint32_t usedNodes = 0;       ///< reachable ones
-    double cost = 0;                   ///< surface area heuristic: expected tests of a random line
+    /** Surface area heuristic: expected visits of nodes of a line that meets the root's box, each triangle
+     * test counted as BvhOptions::triangleCost. */
+    double cost = 0;
 };
 
 /** Builds the tree of positions.size() / 3 triangles (corners in threes, finite). Triangles without area are
  * kept; every triangle is in exactly one leaf. Same input, same result. */
 Bvh buildBvh(std::span<const glm::vec3> positions, const BvhOptions& options = {});
+
+/** Boxes for moved corners: the tree keeps its shape, so that rays cost more the farther triangles have moved
+ * from their neighbours. `positions`: as many as the tree was built of. */
+void refitBvh(Bvh& tree, std::span<const glm::vec3> positions, const BvhOptions& options = {});
 
 /** A child's box, decoded exactly. */
 struct BvhBox {
