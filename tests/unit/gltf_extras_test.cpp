@@ -79,6 +79,24 @@ TEST_F(GltfExtras, ScenesTakeAnEnvironment) {
     const Scene scene = load(file);
     ASSERT_TRUE(scene.environment.has_value());
     EXPECT_EQ(scene.environment->radiance, glm::vec3(1, 0.5f, 0.25f));
+    ImageF sky;
+    sky.width = 2, sky.height = 1;
+    sky.channels = {"R", "G", "B"};
+    sky.data = {1, 2, 3, 4, 5, 6};
+    saveImage(folder_ / "sky.exr", sky);
+    json& environment = file.doc["scenes"][0]["extras"]["heliograph"]["environment"];
+    environment = {{"image", "sky.exr"}, {"rotation", {0, 0.6, 0, 0.8}}};
+    const Scene shining = load(file);
+    EXPECT_NO_THROW(shining.validate());
+    EXPECT_EQ(shining.environment->radiance, glm::vec3(1));
+    EXPECT_FLOAT_EQ(shining.environment->rotation.y, 0.6f);
+    ASSERT_EQ(shining.images.size(), 1u);
+    EXPECT_EQ(std::get<std::vector<float>>(shining.images[0].texels).at(4), 4);
+    for (const char* path : {"../sky.exr", "/etc/passwd", "none.exr"}) {
+        environment["image"] = path;
+        EXPECT_THROW(load(file), InputError) << path;
+    }
+    environment = {{"radiance", {1, 0.5, 0.25}}};
     // Only the shown scene's counts.
     file.doc["scenes"].push_back({{"nodes", {0}}});
     file.doc["scene"] = 1;

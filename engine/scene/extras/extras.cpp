@@ -1,6 +1,7 @@
 #include "engine/scene/extras/extras.hpp"
 
 #include "engine/scene/extras/schema.hpp"
+#include "engine/scene/folder.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -74,6 +75,31 @@ Scattering scatteringOf(const json& from) {
     return to;
 }
 
+Environment environmentOf(const std::string& file, const std::string& pointer, const json& from,
+                          Scene& scene) {
+    Environment to;
+    to.radiance = from.contains("radiance") ? channels(from["radiance"]) : glm::vec3(1);
+    if (from.contains("rotation")) {
+        const json& q = from["rotation"];
+        const glm::quat rotation(q[3].get<float>(), q[0].get<float>(), q[1].get<float>(), q[2].get<float>());
+        if (glm::length(rotation) > 1e-6f) to.rotation = glm::normalize(rotation);
+    }
+    if (!from.contains("image")) return to;
+    const auto& name = from["image"].get_ref<const std::string&>();
+    const auto path = pathBelow(name);
+    if (!path) {
+        throw InputError(file, pointer + "/image", "leads out of the glTF file's folder",
+                         "give a path relative to that folder and below it");
+    }
+    try {
+        scene.images.push_back(loadTextureImage(std::filesystem::path(file).parent_path() / *path));
+    } catch (const InputError& error) {
+        throw InputError(file, pointer + "/image", error.fault, error.remedy);
+    }
+    to.image = int(scene.images.size()) - 1;
+    return to;
+}
+
 }  // namespace
 
 void check(const std::string& file, const json& document) {
@@ -92,14 +118,12 @@ void readMaterial(const json& object, Material& material) {
     if (own->contains("scattering")) material.scattering = scatteringOf((*own)["scattering"]);
 }
 
-void readScene(const json& object, Scene& scene) {
+void readScene(const std::string& file, const std::string& pointer, const json& object, Scene& scene) {
     const json* const own = extrasOf(object);
     if (own == nullptr) return;
-    if (own->contains("environment")) {
-        Environment environment;
-        environment.radiance = channels((*own)["environment"]["radiance"]);
-        scene.environment = environment;
-    }
+    if (own->contains("environment"))
+        scene.environment =
+            environmentOf(file, pointer + "/extras/heliograph/environment", (*own)["environment"], scene);
 }
 
 }  // namespace helio::extras

@@ -15,8 +15,10 @@ namespace helio::extras {
  * pointer, the fault, and what the schema asks for. Objects are those of the lists that glTF 2.0 names. */
 void check(const std::string& file, const nlohmann::json& document);
 
-/** Reads what check() has accepted. `object` is a material or scene of the document. */
+/** Reads what check() has accepted. `object` is a material or scene of the document, `pointer` leads to it.
+ * An environment's image is appended to Scene::images. */
 void readMaterial(const nlohmann::json& object, Material& material);
-void readScene(const nlohmann::json& object, Scene& scene);
+void readScene(const std::string& file, const std::string& pointer, const nlohmann::json& object,
+               Scene& scene);
 
 }  // namespace helio::extras

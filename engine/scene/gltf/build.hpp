@@ -37,6 +37,9 @@ void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& 
 /** Fills Scene::nodes, roots, cameras and lights. Refuses cycles and nodes with two parents. */
 void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
 
+/** Fills Scene::environment, and appends its image; after the materials. */
+void buildEnvironment(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene);
+
 /** Decodes images for textures: each distinct content once. */
 class ImageLoader {
 public:

@@ -16,6 +16,7 @@ namespace gltf {
 
 bool isSupported(const std::string& extension) {
     constexpr std::array supported = std::to_array<std::string_view>({
+        "EXT_lights_image_based",
         "EXT_mesh_gpu_instancing",
         "EXT_texture_webp",
         "KHR_lights_punctual",
@@ -86,6 +87,7 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     gltf::buildAnimations(asset, memory, scene);
     if (!options.variant.empty()) chooseVariant(scene, options.variant);
     gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), monitor, scene);
+    gltf::buildEnvironment(asset, memory, monitor, scene);
     return scene;
 } catch (const std::bad_alloc&) {
     throw InputError(file, "", "does not fit in memory", "give a smaller file");

@@ -1,4 +1,3 @@
-#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/build.hpp"
 
 #include <heliograph/error.hpp>
@@ -215,7 +214,6 @@ void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
              fmt::format("scene {} is shown", shown));
     }
     scene.roots = model.scenes[shown].nodes;
-    extras::readScene(asset.document()["scenes"][shown], scene);
     for (std::size_t i = 0; i < scene.roots.size(); ++i) {
         const int root = scene.roots[i];
         const bool isTwice =

@@ -231,6 +231,13 @@ Check light() {
     });
 }
 
+Check imageBasedLight() {
+    return object({{"name", string()},
+                   {"intensity", number(0)},
+                   {"rotation", numbers(4)},
+                   {"specularImages", arrayOf(arrayOf(indexInto("images"), 6, 6), 1), required}});
+}
+
 /** Whether a version, "MAJOR.MINOR", is no later than 2.0, which is what is read here. */
 bool isAtMostTwo(std::string_view version) {
     const auto point = version.find('.');
@@ -246,6 +253,8 @@ bool isAtMostTwo(std::string_view version) {
 }
 
 const Check& documentCheck() {
+    const Check imageBasedUse =
+        object({{"light", indexInto("extensions.EXT_lights_image_based.lights"), required}});
     const Check webp = object({{"source", indexInto("images"), required}});
     static const Check check = object({
         {"asset", asset(), required},
@@ -277,10 +286,13 @@ const Check& documentCheck() {
         {"nodes", arrayOf(node())},
         {"skins", arrayOf(skin())},
         {"animations", arrayOf(animation())},
-        {"scenes", arrayOf(object({{"name", string()}, {"nodes", arrayOf(indexInto("nodes"))}}))},
+        {"scenes", arrayOf(object({{"name", string()},
+                                   {"nodes", arrayOf(indexInto("nodes"))},
+                                   {"extensions", object({{"EXT_lights_image_based", imageBasedUse}})}}))},
         {"scene", indexInto("scenes")},
         {"extensions",
-         object({{"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})},
+         object({{"EXT_lights_image_based", object({{"lights", arrayOf(imageBasedLight()), required}})},
+                 {"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})},
                  {"KHR_materials_variants",
                   object({{"variants", arrayOf(object({{"name", string(), required}})), required}})}})},
     });
