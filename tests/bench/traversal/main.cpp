@@ -8,8 +8,8 @@
  * number of triangles, from 10^2 to MAX.
  */
 #include "passes/intersect/ray_intersector.hpp"
-#include "tests/bench/traversal/embree_scene.hpp"
-#include "tests/bench/traversal/meshes.hpp"
+#include "tests/support/embree_scene.hpp"
+#include "tests/support/meshes.hpp"
 #include "tests/bench/traversal/rays.hpp"
 
 #include <heliograph/device.hpp>
@@ -30,6 +30,9 @@
 
 namespace helio::bench {
 namespace {
+
+using test::Corners;
+using test::EmbreeScene;
 
 /** Time on the wall, and of all the process's threads: what is left to compare by where others use the cores.
  */
@@ -55,19 +58,6 @@ struct Options {
     int runs = 9;
     std::uint32_t width = 1280, height = 704;
 };
-
-Scene sceneOf(const Corners& corners) {
-    Scene scene;
-    Primitive primitive;
-    primitive.positions = corners;
-    for (std::uint32_t i = 0; i < corners.size(); ++i) primitive.indices.push_back(i);
-    scene.meshes.push_back({"mesh", {std::move(primitive)}});
-    Node node;
-    node.mesh = 0;
-    scene.nodes.push_back(std::move(node));
-    scene.roots = {0};
-    return scene;
-}
 
 /** World-space corners in scene order. */
 Corners cornersOf(const PackedScene& packed) {
@@ -177,9 +167,9 @@ int run(int argc, char** argv) {
     fmt::print("{}, {} threads, {} pairs\n", device.info().name, std::thread::hardware_concurrency(),
                options.runs);
     nlohmann::json results = nlohmann::json::array();
-    if (wanted("knot")) results.push_back(measure(device, "knot", sceneOf(knot()), options));
+    if (wanted("knot")) results.push_back(measure(device, "knot", test::sceneOf(test::knot()), options));
     if (wanted("landscape"))
-        results.push_back(measure(device, "landscape", sceneOf(landscape(1000000)), options));
+        results.push_back(measure(device, "landscape", test::sceneOf(test::landscape(1000000)), options));
     if (wanted("assets"))
         for (const std::string& asset : assets) {
             try {
@@ -190,8 +180,8 @@ int run(int argc, char** argv) {
             }
         }
     for (double count = 100; count <= counts; count *= 10)
-        results.push_back(
-            measure(device, fmt::format("cloud {:.0e}", count), sceneOf(cloud(std::size_t(count))), options));
+        results.push_back(measure(device, fmt::format("cloud {:.0e}", count),
+                                  test::sceneOf(test::cloud(std::size_t(count))), options));
     if (!json.empty()) std::ofstream(json) << results.dump(2) << "\n";
     return 0;
 }

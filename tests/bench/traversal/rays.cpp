@@ -42,8 +42,8 @@ private:
 
 }  // namespace
 
-std::vector<RaySet> raySets(const EmbreeScene& scene, std::span<const glm::vec3> corners, std::uint32_t width,
-                            std::uint32_t height) {
+std::vector<RaySet> raySets(const test::EmbreeScene& scene, std::span<const glm::vec3> corners,
+                            std::uint32_t width, std::uint32_t height) {
     Bounds box;
     for (const glm::vec3& p : corners) {
         box.lower = glm::min(box.lower, p);

@@ -1,6 +1,6 @@
 #pragma once
 /** @file The four kinds of rays that a path tracer sends, from one camera. */
-#include "tests/bench/traversal/embree_scene.hpp"
+#include "tests/support/embree_scene.hpp"
 
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct RaySet {
 
 /** "primary": a pinhole camera's, neighbours together; "bounce 1" and "bounce 2": cosine-distributed from
  * where the set before arrives; "shadow": from the first hits to points of a small light above. */
-std::vector<RaySet> raySets(const EmbreeScene& scene, std::span<const glm::vec3> corners, std::uint32_t width,
-                            std::uint32_t height);
+std::vector<RaySet> raySets(const test::EmbreeScene& scene, std::span<const glm::vec3> corners,
+                            std::uint32_t width, std::uint32_t height);
 
 }  // namespace helio::bench

@@ -1,12 +1,13 @@
-#include "tests/bench/traversal/meshes.hpp"
+#include "tests/support/meshes.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 
-namespace helio::bench {
+namespace helio::test {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
@@ -67,6 +68,29 @@ Corners knot() {
     return out;
 }
 
+Corners octasphere(int level) {
+    const int n = 1 << level;
+    Corners out;
+    for (int face = 0; face < 8; ++face) {
+        const glm::dvec3 sign((face & 1) != 0 ? -1 : 1, (face & 2) != 0 ? -1 : 1, (face & 4) != 0 ? -1 : 1);
+        // Integers that sum to n: a corner is computed from the same numbers in every face that has it.
+        const auto at = [&](int i, int j) {
+            const glm::dvec3 p(i, j, n - i - j);
+            return glm::vec3(sign * p / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) + 0.0);
+        };
+        const bool mirrored = sign.x * sign.y * sign.z < 0;
+        const auto add = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+            out.insert(out.end(), {a, mirrored ? c : b, mirrored ? b : c});
+        };
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; i + j < n; ++j) {
+                add(at(i, j), at(i + 1, j), at(i, j + 1));
+                if (i + j + 1 < n) add(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            }
+    }
+    return out;
+}
+
 Corners landscape(std::size_t triangles) {
     const double scale = std::sqrt(double(triangles) / 1e6);
     Corners out;
@@ -120,4 +144,17 @@ Corners cloud(std::size_t count) {
     return out;
 }
 
-}  // namespace helio::bench
+Scene sceneOf(const Corners& corners) {
+    Scene scene;
+    Primitive primitive;
+    primitive.positions = corners;
+    for (std::uint32_t i = 0; i < corners.size(); ++i) primitive.indices.push_back(i);
+    scene.meshes.push_back({"mesh", {std::move(primitive)}});
+    Node node;
+    node.mesh = 0;
+    scene.nodes.push_back(std::move(node));
+    scene.roots = {0};
+    return scene;
+}
+
+}  // namespace helio::test

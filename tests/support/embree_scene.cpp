@@ -1,4 +1,4 @@
-#include "tests/bench/traversal/embree_scene.hpp"
+#include "tests/support/embree_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <thread>
 
-namespace helio::bench {
+namespace helio::test {
 namespace {
 
 RTCRay rayOf(const Ray& ray) {
@@ -23,7 +23,8 @@ RTCRay rayOf(const Ray& ray) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(std::span<const glm::vec3> corners, unsigned threads) : threads_(threads) {
+EmbreeScene::EmbreeScene(std::span<const glm::vec3> corners, unsigned threads, bool robust)
+    : threads_(threads) {
     device_ = rtcNewDevice(fmt::format("threads={}", threads).c_str());
     rtcSetDeviceMemoryMonitorFunction(
         device_,
@@ -33,6 +34,7 @@ EmbreeScene::EmbreeScene(std::span<const glm::vec3> corners, unsigned threads) :
         },
         &bytes_);
     scene_ = rtcNewScene(device_);
+    if (robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                              sizeof(glm::vec3), corners.size());
@@ -82,4 +84,4 @@ void EmbreeScene::run(std::span<const Ray> rays, RayQuestion question, std::span
     for (std::thread& helper : helpers) helper.join();
 }
 
-}  // namespace helio::bench
+}  // namespace helio::test

@@ -7,12 +7,13 @@
 #include <span>
 #include <vector>
 
-namespace helio::bench {
+namespace helio::test {
 
 class EmbreeScene {
 public:
-    /** Builds over triangles whose corners are given in threes; the hit's slot is the triangle's index. */
-    EmbreeScene(std::span<const glm::vec3> corners, unsigned threads);
+    /** Builds over triangles whose corners are given in threes; the hit's slot is the triangle's index.
+     * `robust`: no misses along edges, at some cost. */
+    EmbreeScene(std::span<const glm::vec3> corners, unsigned threads, bool robust = false);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -30,4 +31,4 @@ private:
     std::size_t bytes_ = 0;
 };
 
-}  // namespace helio::bench
+}  // namespace helio::test
