@@ -32,6 +32,16 @@ std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
     return cells;
 }
 
+void checkSize(std::uint32_t width, std::uint32_t height, std::uint64_t maxStorageBufferRange) {
+    if (width > 0 && height > 0 && width <= kMaxRasterSize && height <= kMaxRasterSize &&
+        std::uint64_t(width) * height * 8 <= maxStorageBufferRange)
+        return;
+    throw InputError("", "",
+                     fmt::format("the rasterizer cannot hold an image of {} x {} pixels", width, height),
+                     fmt::format("choose at most {} pixels, and 1 to {} each way", maxStorageBufferRange / 8,
+                                 kMaxRasterSize));
+}
+
 }  // namespace
 
 void requireRasterCapabilities(const DeviceInfo& device) {
@@ -55,24 +65,31 @@ RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& option
     options_.batch = std::uint32_t(std::clamp<std::uint64_t>(options_.batch, 1, records / kClipParts));
 }
 
+std::uint64_t rasterStride(std::uint32_t width, std::uint32_t height) {
+    constexpr std::uint64_t unit = 256;  // no device asks for a coarser alignment of bindings
+    return (std::uint64_t(width) * height * 8 + unit - 1) / unit * unit;
+}
+
 RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
                                      std::shared_ptr<const RasterView> view) const {
     assert(view != nullptr);
-    const std::uint32_t width = view->width, height = view->height;
-    const std::uint64_t visibilityBytes = std::uint64_t(width) * height * 8;
-    if (width == 0 || height == 0 || width > kMaxRasterSize || height > kMaxRasterSize ||
-        visibilityBytes > maxStorageBufferRange_)
-        throw InputError("", "",
-                         fmt::format("the rasterizer cannot hold an image of {} x {} pixels", width, height),
-                         fmt::format("choose at most {} pixels, and 1 to {} each way",
-                                     maxStorageBufferRange_ / 8, kMaxRasterSize));
-
+    checkSize(view->width, view->height, maxStorageBufferRange_);
     RasterOutput output;
-    output.visibility = graph.buffer("raster.visibility", {visibilityBytes});
+    output.visibility = graph.buffer("raster.visibility", {std::uint64_t(view->width) * view->height * 8});
     output.counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
     graph.fill("raster.clear", output.visibility, 0);
     graph.fill("raster.clearCounters", output.counters, 0);
-    if (triangles.count == 0) return output;
+    declare(graph, triangles, std::move(view), {output.visibility, 0, output.counters});
+    return output;
+}
+
+void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
+                             std::shared_ptr<const RasterView> view, const RasterTarget& target) const {
+    assert(view != nullptr);
+    const std::uint32_t width = view->width, height = view->height;
+    checkSize(width, height, maxStorageBufferRange_);
+    if (triangles.count == 0) return;
+    const Window window{target.offset, std::uint64_t(width) * height * 8};
 
     const std::uint32_t batch = std::min(options_.batch, triangles.count);
     const std::uint64_t cells = cellCount(width, height);
@@ -103,10 +120,10 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
         graph.fill("raster.clearState", state, 0);
         graph.compute("raster.setup", shaders::rasterSetup, projection)
             .reads({{"uTriangles", triangles.buffer}})
-            .modifies({{"uVisibility", output.visibility},
-                       {"uVisibilityTexels", output.visibility, Format::RG32UI},
+            .modifies({{"uVisibility", target.visibility, window},
+                       {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
                        {"uState", state},
-                       {"uCounters", output.counters}})
+                       {"uCounters", target.counters}})
             .overwrites({{"uLarge", large}, {"uClipped", clipped}})
             .record([push, count](Commands& c) {
                 c.push(push()).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
@@ -123,13 +140,13 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
         graph.compute("raster.clip", shaders::rasterClip, projection)
             .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uClipped", clipped}})
             .writes({{"uRecords", record}})
-            .modifies({{"uCounts", counts}, {"uCounters", output.counters}})
+            .modifies({{"uCounts", counts}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
         graph.compute("raster.scan", shaders::rasterScan)
             .reads({{"uCounts", counts}})
             .overwrites({{"uStarts", starts}})
-            .modifies({{"uState", state}, {"uCounters", output.counters}})
+            .modifies({{"uState", state}, {"uCounters", target.counters}})
             .record([push](Commands& c) { c.push(push()).dispatch(1); });
         graph.compute("raster.fill", shaders::rasterFill)
             .reads({{"uRecords", record}, {"uState", state}, {"uStarts", starts}})
@@ -141,18 +158,17 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
             {"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts, Format::R32UI}};
         graph.compute("raster.tile", options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile)
             .reads(lists)
-            .modifies({{"uVisibility", output.visibility},
-                       {"uVisibilityTexels", output.visibility, Format::RG32UI},
-                       {"uCounters", output.counters}})
+            .modifies({{"uVisibility", target.visibility, window},
+                       {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
+                       {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
         graph.compute("raster.tileMore", shaders::rasterTileMore)
             .reads(lists)
-            .modifies({{"uVisibility", output.visibility}, {"uCounters", output.counters}})
+            .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kMoreGroups); });
     }
-    return output;
 }
 
 }  // namespace helio

@@ -65,6 +65,15 @@ struct RasterOutput {
 /** What the rasterizer needs of a device beyond what every device has. */
 inline constexpr std::array kRasterCapabilities = {"shaderInt64", "shaderBufferInt64Atomics", "shaderFloat64",
                                                    "subgroupArithmetic", "subgroupShuffle"};
+/** Where a rasterizer's output goes, for callers that draw several images: cleared by the caller. */
+struct RasterTarget {
+    Buffer visibility;
+    std::uint64_t offset = 0;  ///< bytes; a multiple of rasterStride()'s unit
+    Buffer counters;           ///< added to
+};
+/** Bytes from one image's keys to the next's in a buffer of several. */
+std::uint64_t rasterStride(std::uint32_t width, std::uint32_t height);
+
 /** Throws DeviceError where the device lacks one of kRasterCapabilities. */
 void requireRasterCapabilities(const DeviceInfo& device);
 
@@ -77,6 +86,9 @@ public:
      * and kind of projection may not. Throws InputError for a size that the device cannot hold. */
     RasterOutput declare(Graph& graph, const RasterTriangles& triangles,
                          std::shared_ptr<const RasterView> view) const;
+    /** The same into a part of a buffer. */
+    void declare(Graph& graph, const RasterTriangles& triangles, std::shared_ptr<const RasterView> view,
+                 const RasterTarget& target) const;
 
 private:
     RasterOptions options_;

@@ -1,11 +1,12 @@
 #include "passes/renderer/raster_render.hpp"
 
-#include "passes/renderer/frame.hpp"
+#include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 namespace helio {
 namespace {
@@ -25,12 +26,14 @@ double farthestDistance(const glm::dmat4& camera, const Scene::Bounds& bounds) {
     return farthest > 0 ? farthest : 1;
 }
 
-/** What the options ask for that one sample per pixel has no use for. */
+/** What the options ask for that rasterization has no use for. */
 void noteUnused(const RenderOptions& options, RenderResult& result) {
     const auto skip = [&](const char* what, const char* why) { result.skipped.emplace_back(what, why); };
-    if (options.samples > 1) skip("samples", "the raster pipeline takes one sample at each pixel's centre");
-    if (options.filter != PixelFilter::Box)
-        skip("pixel filter", "the raster pipeline takes one sample at each pixel's centre");
+    const bool sampled = !options.antialiasing.positions.empty();
+    const char* why = sampled ? "the raster pipeline's samples are those of its antialiasing"
+                              : "the raster pipeline takes one sample at each pixel's centre";
+    if (options.samples > 1) skip("samples", why);
+    if (options.filter != PixelFilter::Box) skip("pixel filter", why);
     if (options.maxDepth >= 0) skip("depth limit", "the raster pipeline shades direct light only");
 }
 
@@ -44,19 +47,78 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
                              const RenderOptions& options)
     : size_(options.size),
       cull_(options.cullBackFaces),
+      auxiliary_(options.auxiliary),
+      kind_(options.antialiasing.kind),
+      sampleCount_(options.antialiasing.positions.size()),
       view_(std::make_shared<RasterView>(view)),
       raster_(device, {.cullBackFaces = options.cullBackFaces}),
       shade_(device, scene.deviceScene) {
     makeMips(device);
+    const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
+    if (!sampled || auxiliary_) makeCentrePlan(device);
+    if (kind_ == Kind::Supersampling) makeSupersamplePlan(device);
+    if (kind_ == Kind::Multisampling) makeMultisamplePlan(device);
+}
+
+bool RasterSession::fits(const RasterView& view, const RenderOptions& options) const {
+    return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
+           options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
+           view.orthographic == view_->orthographic;
+}
+
+void RasterSession::makeCentrePlan(Device& device) {
     Graph graph(device);
     const RasterOutput visible = raster_.declare(graph, shade_.triangles(graph), view_);
     const ShadeOutput shaded = shade_.declare(graph, visible, view_);
-    color_ = graph.readback<float>(shaded.color);
-    albedoDepth_ = graph.readback<float>(shaded.albedoDepth);
-    normal_ = graph.readback<float>(shaded.normal);
-    ids_ = graph.readback<std::int32_t>(shaded.ids);
+    color_ =
+        graph.readback<float>(kind_ == Kind::Fxaa ? declareFxaa(graph, shaded.color, size_) : shaded.color);
+    if (auxiliary_) {
+        albedoDepth_ = graph.readback<float>(shaded.albedoDepth);
+        normal_ = graph.readback<float>(shaded.normal);
+        ids_ = graph.readback<std::int32_t>(shaded.ids);
+    }
+    counters_ = graph.readback<RasterCounters>(visible.counters);
     plan_ = graph.compile({.executionsInFlight = 1});
     plan_.wait(plan_.execute());  // the driver compiles at the first dispatch
+}
+
+void RasterSession::makeSupersamplePlan(Device& device) {
+    const std::uint32_t pixels = size_[0] * size_[1];
+    sampleViews_.push_back(std::make_shared<RasterView>(*view_));
+    sum_.emplace(device, "raster.sum", std::uint64_t(pixels) * 16);
+    Graph graph(device);
+    const RasterOutput visible = raster_.declare(graph, shade_.triangles(graph), sampleViews_[0]);
+    const ShadeOutput shaded = shade_.declare(graph, visible, sampleViews_[0]);
+    declareAdd(graph, shaded.color, graph.import(*sum_), pixels, weight_);
+    counters_ = graph.readback<RasterCounters>(visible.counters);
+    samplePlan_ = graph.compile({.executionsInFlight = 1});
+    samplePlan_.wait(samplePlan_.execute());
+}
+
+void RasterSession::makeMultisamplePlan(Device& device) {
+    const std::uint64_t stride = rasterStride(size_[0], size_[1]), bytes = stride * sampleCount_;
+    if (bytes > device.info().maxStorageBufferRange)
+        throw InputError("", "antialiasing",
+                         fmt::format("{} samples of {}x{} pixels are more than the device binds at once",
+                                     sampleCount_, size_[0], size_[1]),
+                         fmt::format("choose fewer samples or at most {} pixels",
+                                     device.info().maxStorageBufferRange / (8 * sampleCount_)));
+    Graph graph(device);
+    const Buffer visibility = graph.buffer("raster.visibility", {bytes}),
+                 counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
+    graph.fill("raster.clear", visibility, 0);
+    graph.fill("raster.clearCounters", counters, 0);
+    for (std::size_t k = 0; k < sampleCount_; ++k) {
+        sampleViews_.push_back(std::make_shared<RasterView>(*view_));
+        raster_.declare(graph, shade_.triangles(graph), sampleViews_[k], {visibility, k * stride, counters});
+    }
+    const MultisampleOutput shaded =
+        shade_.declareMultisample(graph, visibility, std::uint32_t(sampleCount_), view_);
+    sampleColor_ = graph.readback<float>(shaded.color);
+    shadings_ = graph.readback<std::uint32_t>(shaded.shadings);
+    counters_ = graph.readback<RasterCounters>(counters);
+    samplePlan_ = graph.compile({.executionsInFlight = 1});
+    samplePlan_.wait(samplePlan_.execute());
 }
 
 void RasterSession::makeMips(Device& device) {
@@ -67,33 +129,101 @@ void RasterSession::makeMips(Device& device) {
     plan.wait(plan.execute());
 }
 
-void RasterSession::render(const RasterView& view, RenderJob& job) {
-    *view_ = view;
-    job.graphviz = plan_.graphviz();
-    RenderResult& result = job.result;
-    job.beginRendering();
-    const Execution execution = plan_.execute();
-    const std::vector<float> color = color_.wait(execution);
+bool RasterSession::picture(const RasterView& view, RenderJob& job, std::vector<float>& color) {
+    const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
+    const auto add = [&](const RasterCounters& counters) {
+        const auto* from = reinterpret_cast<const std::uint64_t*>(&counters);
+        auto* to = reinterpret_cast<std::uint64_t*>(&work_);
+        for (std::size_t i = 0; i < sizeof counters / 8; ++i) to[i] += from[i];
+    };
+    work_ = {};
+    shaded_ = 0;
+    if (kind_ == Kind::Supersampling) {
+        for (std::size_t k = 0; k < positions.size(); ++k) {
+            *sampleViews_[0] = shiftedView(view, positions[k]);
+            *weight_ = {1.0f / float(positions.size()), k == 0};
+            const Execution done = samplePlan_.execute();
+            add(counters_.wait(done).at(0));
+            job.addTimings(samplePlan_.timings(done));
+            const double fraction = double(k + 1) / double(positions.size());
+            if (!job.notify({.stage = "render",
+                             .fraction = fraction,
+                             .samples = std::uint32_t(k + 1),
+                             .seconds = job.seconds(),
+                             .secondsLeft = job.seconds() * (1 - fraction) / fraction}) &&
+                k + 1 < positions.size())
+                return false;
+        }
+        color.resize(std::size_t(size_[0]) * size_[1] * 4);
+        sum_->download(color.data(), color.size() * 4);
+        shaded_ = std::uint64_t(size_[0]) * size_[1] * positions.size();
+        return true;
+    }
+    for (std::size_t k = 0; k < sampleViews_.size(); ++k) *sampleViews_[k] = shiftedView(view, positions[k]);
+    Plan& plan = kind_ == Kind::Multisampling ? samplePlan_ : plan_;
+    const Execution done = plan.execute();
+    color = (kind_ == Kind::Multisampling ? sampleColor_ : color_).wait(done);
+    add(counters_.wait(done).at(0));
+    shaded_ = std::uint64_t(size_[0]) * size_[1];
+    if (kind_ == Kind::Multisampling) {
+        const std::vector<std::uint32_t> shadings = shadings_.wait(done);
+        shaded_ = std::accumulate(shadings.begin(), shadings.end(), std::uint64_t(0));
+    }
+    job.addTimings(plan.timings(done));
+    return true;
+}
+
+void RasterSession::addAuxiliary(Frame& frame, const Execution& execution) const {
     const std::vector<float> albedoDepth = albedoDepth_.wait(execution), normal = normal_.wait(execution);
     const std::vector<std::int32_t> ids = ids_.wait(execution);
+    frame.add({"albedo.R", "albedo.G", "albedo.B"}, albedoDepth.data(), 4);
+    frame.add({"normal.X", "normal.Y", "normal.Z"}, normal.data(), 4);
+    frame.add({"depth.Z"}, albedoDepth.data(), 4, 3);
+    const std::vector<float> id(ids.begin(), ids.end());
+    frame.add({"id.instance", "id.triangle"}, id.data(), 2);
+    const std::vector<float> zero(ids.size() / 2, 0.0f),
+        samples(ids.size() / 2, float(std::max<std::size_t>(sampleCount_, 1)));
+    for (const char* name : {"variance.R", "variance.G", "variance.B"}) frame.add({name}, zero.data(), 1);
+    frame.add({"samples"}, samples.data(), 1);
+}
+
+void RasterSession::noteCounters(RenderResult& result) const {
+    result.counters = {{"triangles", work_.triangles},
+                       {"triangles_outside", work_.outside},
+                       {"triangles_back_facing", work_.backFacing},
+                       {"triangles_empty", work_.empty},
+                       {"triangles_small", work_.small},
+                       {"triangles_large", work_.large},
+                       {"triangles_clipped", work_.clipped},
+                       {"clipped_parts", work_.parts},
+                       {"small_pixels_visited", work_.smallVisited},
+                       {"small_pixels_covered", work_.smallCovered},
+                       {"tile_entries", work_.entries},
+                       {"tile_triangles_visited", work_.tileVisited},
+                       {"pixels_shaded", shaded_}};
+}
+
+void RasterSession::render(const RasterView& view, RenderJob& job) {
+    *view_ = view;
+    const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
+    job.graphviz = (sampled ? samplePlan_ : plan_).graphviz();
+    RenderResult& result = job.result;
+    job.beginRendering();
+    std::vector<float> color;
+    if (!picture(view, job, color)) return job.finish();
+    Execution centre;
+    if (auxiliary_) {
+        centre = plan_.execute();
+        plan_.wait(centre);
+        if (sampled) job.addTimings(plan_.timings(centre));
+    }
     job.finish();
 
     Frame frame(size_[0], size_[1]);
     frame.add({"R", "G", "B"}, color.data(), 4);
-    if (job.options.auxiliary) {
-        frame.add({"albedo.R", "albedo.G", "albedo.B"}, albedoDepth.data(), 4);
-        frame.add({"normal.X", "normal.Y", "normal.Z"}, normal.data(), 4);
-        frame.add({"depth.Z"}, albedoDepth.data(), 4, 3);
-        const std::vector<float> id(ids.begin(), ids.end());
-        frame.add({"id.instance", "id.triangle"}, id.data(), 2);
-        const std::vector<float> one(ids.size() / 2, 1.0f), zero(ids.size() / 2, 0.0f);
-        frame.add({"variance.R"}, zero.data(), 1);
-        frame.add({"variance.G"}, zero.data(), 1);
-        frame.add({"variance.B"}, zero.data(), 1);
-        frame.add({"samples"}, one.data(), 1);
-    }
+    if (auxiliary_) addAuxiliary(frame, centre);
     result.image = frame.image();
-    result.samples = 1;
+    result.samples = std::uint32_t(std::max<std::size_t>(sampleCount_, 1));
     result.nanCount = std::uint64_t(std::ranges::count_if(color, [](float x) { return x != x; }));
     if (result.nanCount > 0) {
         result.warnings.push_back(
@@ -101,8 +231,12 @@ void RasterSession::render(const RasterView& view, RenderJob& job) {
     }
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
-    job.addTimings(plan_.timings(execution));
-    job.notify({.stage = "render", .fraction = 1, .samples = 1, .seconds = job.seconds(), .secondsLeft = 0});
+    noteCounters(result);
+    job.notify({.stage = "render",
+                .fraction = 1,
+                .samples = result.samples,
+                .seconds = job.seconds(),
+                .secondsLeft = 0});
 }
 
 void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job) {

@@ -1,6 +1,8 @@
 #pragma once
 /** @file The raster pipeline of the renderer. */
+#include "passes/antialias/antialias.hpp"
 #include "passes/raster/raster_pipeline.hpp"
+#include "passes/renderer/frame.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/render_job.hpp"
 #include "passes/shade/shade.hpp"
@@ -9,38 +11,57 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace helio {
 
 /** How a scene is packed for rasterization. */
 PackOptions rasterPackOptions();
 
-/** The compiled plan of one scene, size and culling; the camera may differ from run to run. Must not outlive
- * the scene. Not movable. */
+/** The compiled plans of one scene, size, culling and antialiasing; the camera and the samples' positions may
+ * differ from run to run. Must not outlive the scene. Not movable. */
 class RasterSession {
 public:
     RasterSession(Device& device, PreparedScene& scene, const RasterView& view, const RenderOptions& options);
     RasterSession(const RasterSession&) = delete;
     RasterSession& operator=(const RasterSession&) = delete;
 
-    bool fits(const RasterView& view, const RenderOptions& options) const {
-        return options.size == size_ && options.cullBackFaces == cull_ &&
-               view.orthographic == view_->orthographic;
-    }
-    /** One sample at every pixel's centre. */
+    bool fits(const RasterView& view, const RenderOptions& options) const;
     void render(const RasterView& view, RenderJob& job);
 
 private:
+    using Kind = Antialiasing::Kind;
     void makeMips(Device& device);
+    void makeCentrePlan(Device& device);
+    void makeSupersamplePlan(Device& device);
+    void makeMultisamplePlan(Device& device);
+    /** The picture, vec4 a pixel; false where the application cancels. */
+    bool picture(const RasterView& view, RenderJob& job, std::vector<float>& color);
+    void addAuxiliary(Frame& frame, const Execution& execution) const;
+    void noteCounters(RenderResult& result) const;
 
     std::array<std::uint32_t, 2> size_;
-    bool cull_, auxiliary_ = true;
+    bool cull_, auxiliary_;
+    Kind kind_;
+    std::size_t sampleCount_;
     std::shared_ptr<RasterView> view_;
     RasterPipeline raster_;
     ShadePipeline shade_;
+    /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;
     Readback<float> color_, albedoDepth_, normal_;
     Readback<std::int32_t> ids_;
+    Readback<RasterCounters> counters_;
+    /** One sample (supersampling) or all of them. */
+    Plan samplePlan_;
+    std::vector<std::shared_ptr<RasterView>> sampleViews_;
+    std::shared_ptr<AddWeight> weight_ = std::make_shared<AddWeight>();
+    std::optional<DeviceBuffer> sum_;
+    Readback<float> sampleColor_;
+    Readback<std::uint32_t> shadings_;
+    RasterCounters work_;
+    std::uint64_t shaded_ = 0;
 };
 
 /** Rasterizes and shades; fills in the job's result. There is no Monte Carlo error: relMSE is 0, and not

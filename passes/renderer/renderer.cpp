@@ -22,6 +22,20 @@ void refuse(bool bad, const char* option, const std::string& fault, const char* 
     if (bad) throw InputError("", option, fault, remedy);
 }
 
+void checkAntialiasing(const Antialiasing& antialiasing) {
+    using Kind = Antialiasing::Kind;
+    const std::size_t count = antialiasing.positions.size();
+    const bool samples = antialiasing.kind == Kind::Supersampling || antialiasing.kind == Kind::Multisampling;
+    refuse(samples != (count > 0), "antialiasing", fmt::format("{} positions of samples", count),
+           "give positions for supersampling and multisampling, and for nothing else");
+    refuse(antialiasing.kind == Kind::Multisampling && count > 16, "antialiasing",
+           fmt::format("multisampling with {} samples", count), "give at most 16");
+    for (const auto& position : antialiasing.positions)
+        for (const float c : position)
+            refuse(!(c >= 0 && c <= 1), "antialiasing", fmt::format("a sample at {} of its pixel", c),
+                   "give positions from 0 to 1");
+}
+
 void check(const RenderOptions& options) {
     const auto [width, height] = options.size;
     refuse(width == 0 || height == 0, "size", fmt::format("{}x{} pixels", width, height),
@@ -31,6 +45,7 @@ void check(const RenderOptions& options) {
     refuse(!(options.maxError >= 0), "maxError", "is negative or not a number", "give 0 for no limit");
     refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
     refuse(!std::isfinite(options.frameTime), "frameTime", "is not finite", "give a time in seconds");
+    checkAntialiasing(options.antialiasing);
     if (!options.environment) return;
     const Environment& environment = *options.environment;
     for (int c = 0; c < 3; ++c) {

@@ -9,6 +9,8 @@ std::string RenderResult::json() const {
     using Json = nlohmann::ordered_json;
     Json passTimes = Json::array(), skippedParts = Json::array();
     for (const PassTime& pass : passes) passTimes.push_back({{"name", pass.name}, {"ms", pass.milliseconds}});
+    Json work = Json::object();
+    for (const auto& [name, count] : counters) work[name] = count;
     for (const auto& [what, why] : skipped) skippedParts.push_back({{"what", what}, {"why", why}});
     const Json statistics = {
         {"version", version},
@@ -27,6 +29,7 @@ std::string RenderResult::json() const {
         {"truncated_paths", truncatedPaths},
         {"memory", {{"host_bytes", hostBytes}, {"device_bytes", deviceBytes}}},
         {"passes", passTimes},
+        {"counters", work},
         {"features", features},
         {"skipped", skippedParts}};
     // Names come from files and may not be UTF-8; numbers that JSON has no text for become null.

@@ -33,20 +33,31 @@ RasterTriangles ShadePipeline::triangles(Graph& graph) {
     return {Buffer{bindings[0].resource, bindings[0].graph}, scene_.info().triangleCount};
 }
 
-ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
-                                   std::shared_ptr<const RasterView> view) {
-    const std::uint64_t pixels = std::uint64_t(view->width) * view->height;
+/** What both ways of shading bind. */
+struct ShadePipeline::Common {
+    Buffer slots, environment;
+    SpecConstants spec, firstSpec;
+    std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
+    bool hasImage = false;
+    /** The kernel that shows the surroundings. */
+    Kernel kernel(const Kernel& plain) const {
+        if (!hasImage) return plain;
+        return compileVariant(plain, {.defines = {{"ENVIRONMENT_IMAGE", "1"}}, .generated = {}});
+    }
+};
+
+ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterView& view) {
     const std::uint32_t triangleCount = scene_.info().triangleCount;
     const bool sceneOrder = scene_.info().nodeCount == 0;
-    const Buffer environment = graph.import(environment_);
-
+    Common common;
+    common.environment = graph.import(environment_);
     // Keys hold ids in scene order; a tree keeps its triangles in its own.
-    Buffer slots = environment;
+    common.slots = common.environment;
     if (!sceneOrder) {
-        slots = graph.buffer("shade.slots", {std::uint64_t(triangleCount) * 4});
+        common.slots = graph.buffer("shade.slots", {std::uint64_t(triangleCount) * 4});
         graph.compute("shade.slots", shaders::shadeSlots)
             .reads(scene_.bindings(graph, {"uTriangles"}))
-            .overwrites({{"uSlots", slots}})
+            .overwrites({{"uSlots", common.slots}})
             .record([triangleCount](Commands& c) {
                 constexpr std::uint32_t most = 1u << 21;
                 for (std::uint32_t first = 0; first < triangleCount; first += most)
@@ -54,24 +65,31 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
                         .dispatchInvocations(std::min(most, triangleCount - first));
             });
     }
+    common.spec = scene_.constants({"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_EMISSION",
+                                    "HAS_EMISSION_TEXTURES", "HAS_FLOAT_TEXTURES", "HAS_AREA_LIGHTS",
+                                    "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
+    common.spec["FILTER_MIPS"] = mips_.needed();
+    common.spec["SCENE_ORDER"] = sceneOrder;
+    common.spec["ORTHOGRAPHIC"] = view.orthographic;
+    common.firstSpec = common.spec;
+    common.firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
+    common.firstSpec.merge(scene_.environmentConstants());
+    common.hasImage = scene_.hasEnvironmentImage();
+    if (common.hasImage) common.surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
+    return common;
+}
 
-    SpecConstants spec = scene_.constants({"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_EMISSION",
-                                           "HAS_EMISSION_TEXTURES", "HAS_FLOAT_TEXTURES", "HAS_AREA_LIGHTS",
-                                           "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
-    spec["FILTER_MIPS"] = mips_.needed();
-    spec["SCENE_ORDER"] = sceneOrder;
-    spec["ORTHOGRAPHIC"] = view->orthographic;
-    SpecConstants firstSpec = spec;
-    firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
-    firstSpec.merge(scene_.environmentConstants());
-    Kernel surfaceKernel = shaders::shadeSurface;
-    std::vector<Binding> surroundings;
-    if (scene_.hasEnvironmentImage()) {
-        surfaceKernel =
-            compileVariant(surfaceKernel, {.defines = {{"ENVIRONMENT_IMAGE", "1"}}, .generated = {}});
-        surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
-    }
+void ShadePipeline::bindScene(Graph& graph, Pass& pass, const Common& common) {
+    pass.reads(scene_.bindings(graph, {"uTriangles", "uNormals", "uTexcoords", "uColors", "uMaterials",
+                                       "uLights", "uTextures", "uTexels8", "uTexelsFloat", "uInstanceFirst"}))
+        .reads(mips_.bindings(graph))
+        .reads({{"uSlots", common.slots, Format::R32UI}});
+}
 
+ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
+                                   std::shared_ptr<const RasterView> view) {
+    const std::uint64_t pixels = std::uint64_t(view->width) * view->height;
+    const Common common = declareCommon(graph, *view);
     ShadeOutput output;
     output.color = graph.buffer("shade.color", {pixels * 16});
     output.albedoDepth = graph.buffer("shade.albedoDepth", {pixels * 16});
@@ -81,25 +99,52 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
     const std::uint32_t lights = scene_.info().lightCount;
     for (std::uint32_t first = 0; first == 0 || first < lights; first += kLightsPerPass) {
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
-        Pass pass = first == 0 ? graph.compute("shade.surface", surfaceKernel, {.spec = firstSpec})
-                               : graph.compute("shade.lights", shaders::shadeLights, {.spec = spec});
-        pass.reads(scene_.bindings(
-                       graph, {"uTriangles", "uNormals", "uTexcoords", "uColors", "uMaterials", "uLights",
-                               "uTextures", "uTexels8", "uTexelsFloat", "uInstanceFirst"}))
-            .reads(mips_.bindings(graph))
-            .reads({{"uVisibility", raster.visibility}, {"uSlots", slots, Format::R32UI}})
-            .record([view, first, count](Commands& c) {
-                c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
-            });
+        Pass pass = first == 0 ? graph.compute("shade.surface", common.kernel(shaders::shadeSurface),
+                                               {.spec = common.firstSpec})
+                               : graph.compute("shade.lights", shaders::shadeLights, {.spec = common.spec});
+        bindScene(graph, pass, common);
+        pass.reads({{"uVisibility", raster.visibility}}).record([view, first, count](Commands& c) {
+            c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
+        });
         if (first == 0)
-            pass.reads({{"uEnvironment", environment, Format::RGBA32F}})
-                .reads(surroundings)
+            pass.reads({{"uEnvironment", common.environment, Format::RGBA32F}})
+                .reads(common.surroundings)
                 .overwrites({{"uColor", output.color},
                              {"uAlbedoDepth", output.albedoDepth},
                              {"uNormal", output.normal},
                              {"uIds", output.ids}});
         else
             pass.modifies({{"uColor", output.color}});
+    }
+    return output;
+}
+
+MultisampleOutput ShadePipeline::declareMultisample(Graph& graph, Buffer visibility, std::uint32_t samples,
+                                                    std::shared_ptr<const RasterView> view) {
+    const std::uint64_t pixels = std::uint64_t(view->width) * view->height;
+    const Common common = declareCommon(graph, *view);
+    MultisampleOutput output;
+    output.color = graph.buffer("shade.color", {pixels * 16});
+    output.shadings = graph.buffer("shade.shadings", {pixels * 4});
+    const std::uint32_t lights = scene_.info().lightCount;
+    for (std::uint32_t first = 0; first == 0 || first < lights; first += kLightsPerPass) {
+        const std::uint32_t count = std::min(kLightsPerPass, lights - first);
+        SpecConstants spec = common.firstSpec;
+        spec["SAMPLES"] = std::int32_t(samples);
+        spec["SAMPLE_KEYS"] = std::int32_t(rasterStride(view->width, view->height) / 8);
+        spec["FIRST_LIGHTS"] = first == 0;
+        Pass pass =
+            graph.compute("shade.multisample", common.kernel(shaders::shadeMultisample), {.spec = spec});
+        bindScene(graph, pass, common);
+        pass.reads({{"uVisibility", visibility}, {"uEnvironment", common.environment, Format::RGBA32F}})
+            .reads(common.surroundings)
+            .record([view, first, count](Commands& c) {
+                c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
+            });
+        if (first == 0)
+            pass.overwrites({{"uColor", output.color}, {"uShadings", output.shadings}});
+        else
+            pass.modifies({{"uColor", output.color}, {"uShadings", output.shadings}});
     }
     return output;
 }

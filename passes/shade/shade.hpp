@@ -32,6 +32,12 @@ struct ShadeOutput {
     Buffer ids;          ///< ivec2: instance, triangle within it; -1 for a miss
 };
 
+/** Of multisampling, per pixel, rows from the top. */
+struct MultisampleOutput {
+    Buffer color;     ///< vec4: linear RGB radiance, covered share
+    Buffer shadings;  ///< uint: triangles that were shaded for the pixel
+};
+
 /** Shades one scene. Must outlive the plans it is declared in, as must the scene. */
 class ShadePipeline {
 public:
@@ -45,6 +51,11 @@ public:
     /** Declares rasterization of the scene and its shading. `view` as for RasterPipeline::declare. */
     ShadeOutput declare(Graph& graph, const RasterOutput& raster, std::shared_ptr<const RasterView> view);
 
+    /** Shades the keys of several samples a pixel, each triangle once a pixel: `visibility` holds one image
+     * of keys a sample, rasterStride() apart; `view` is that of the pixels' centres. 1 to 32 samples. */
+    MultisampleOutput declareMultisample(Graph& graph, Buffer visibility, std::uint32_t samples,
+                                         std::shared_ptr<const RasterView> view);
+
     /** The scene's triangles for RasterPipeline::declare. */
     RasterTriangles triangles(Graph& graph);
 
@@ -52,6 +63,10 @@ public:
     std::vector<std::pair<std::string, std::string>> skipped() const;
 
 private:
+    struct Common;
+    Common declareCommon(Graph& graph, const RasterView& view);
+    void bindScene(Graph& graph, Pass& pass, const Common& common);
+
     DeviceScene& scene_;
     MipChains mips_;
     DeviceBuffer environment_;

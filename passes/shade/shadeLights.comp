@@ -10,7 +10,7 @@ void main() {
     ivec2 size = imageSizePixels(), pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
-    Shaded shaded = shadePoint(pixel, index);
+    Shaded shaded = shadePoint(pixel, visibility[index]);
     vec3 light = reflectedLight(shaded);
     if (shaded.hit) color[index].rgb += light;
 }

@@ -13,7 +13,7 @@ void main() {
     ivec2 size = imageSizePixels(), pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
-    Shaded shaded = shadePoint(pixel, index);
+    Shaded shaded = shadePoint(pixel, visibility[index]);
     vec3 radiance = shaded.emission + reflectedLight(shaded);
     vec3 surroundings = vec3(0.0);
     if (HAS_ENVIRONMENT) {

@@ -27,6 +27,7 @@ struct RenderArguments {
     std::string environment;
     std::string stats, graph;
     std::string device = "auto";
+    std::string antialiasing;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
     RenderOptions options;
@@ -116,7 +117,7 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
                                                           error.relmse, error.low, error.high)
                                             : fmt::format("{:.3g} (not reliable)", error.relmse));
     } else {
-        printLine("error    not measured: one sample at each pixel's centre");
+        printLine("error    not measured");
     }
     printSkipped(scene, result);
 }
@@ -124,6 +125,10 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
+        if (command.count("--aa") > 0) {
+            throw CLI::ValidationError("--aa",
+                                       "is there for --pipeline raster only; paths have --spp and --filter");
+        }
         if (options.cullBackFaces) {
             throw CLI::ValidationError("--cull", "back is there for --pipeline raster only, so far");
         }
@@ -182,6 +187,13 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     const bool image = !arguments.environment.empty() && !isRadiance(arguments.environment);
     if (!arguments.environment.empty() && !image) options.environment = parseRadiance(arguments.environment);
     checkPipelineOptions(command, options);
+    if (!arguments.antialiasing.empty()) {
+        try {
+            options.antialiasing = antialiasing(arguments.antialiasing, options.seed);
+        } catch (const InputError& error) {
+            throw CLI::ValidationError("--aa", error.what());
+        }
+    }
     for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
     for (const std::string& output : {arguments.stats, arguments.graph}) {
         if (!output.empty()) checkTextOutput(output);
@@ -303,6 +315,10 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_flag("--no-nee", arguments->noNextEvent, "Trace without next-event estimation");
     addChoice<bool>(command, "--cull", options.cullBackFaces, {{"none", false}, {"back", true}},
                     "none (default) or back: faces the raster pipeline leaves out");
+    command->add_option(
+        "--aa", arguments->antialiasing,
+        "Antialiasing of the raster pipeline: none (default), fxaa, msaa2, msaa4, msaa8, msaa16, or "
+        "each sample shaded: ssaaN, gridN, jitterN (N x N), randomN");
     command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command
         ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")

@@ -10,7 +10,7 @@
 
 layout(constant_id = 120) const bool FILTER_MIPS = true;    ///< some texture has mip levels
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
-layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth
+layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
 layout(set = 0, binding = 1) uniform usamplerBuffer uSlots;         ///< place of a triangle by its id
 layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first id of every instance
 layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< one texel: constant radiance of the surroundings
@@ -42,9 +42,8 @@ struct Shaded {
     int triangle;   // within the instance
 };
 
-/// Everything of a pixel that light does not change.
-Shaded shadePoint(ivec2 pixel, int index) {
-    uvec2 key = visibility[index];
+/// Everything that light does not change of what a visibility key shows at a pixel's centre.
+Shaded shadePoint(ivec2 pixel, uvec2 key) {
     Shaded shaded;
     shaded.hit = (key.x | key.y) != 0u;
     int g = shaded.hit ? int(~key.x) : 0;

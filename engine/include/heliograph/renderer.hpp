@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,24 @@ struct Progress {
     double secondsLeft = -1;  ///< negative where unknown
 };
 
+/** How the raster pipeline antialiases. */
+struct Antialiasing {
+    enum class Kind : std::uint8_t {
+        None,
+        Supersampling,  ///< every sample is shaded
+        Multisampling,  ///< coverage and depth per sample, one shading per pixel and triangle; up to 16
+                        ///< samples
+        Fxaa            ///< a filter of the finished picture, after Lottes
+    };
+    Kind kind = Kind::None;
+    /** Of the samples within the pixel, from its upper left corner, 0 to 1. Equal weights. */
+    std::vector<std::array<float, 2>> positions;
+};
+/** By name: none; fxaa; msaa2, msaa4, msaa8, msaa16 (Vulkan's standard positions); supersampling as ssaaN (N
+ * points of an even sequence), gridN and jitterN (N x N, at the centres of its cells or anywhere in them),
+ * randomN. The seed is that of jitterN and randomN. Throws InputError. */
+Antialiasing antialiasing(std::string_view name, std::uint32_t seed = 0);
+
 struct RenderOptions {
     std::array<std::uint32_t, 2> size = {1280, 720};  ///< pixels
     Pipeline pipeline = Pipeline::Path;
@@ -47,7 +66,8 @@ struct RenderOptions {
     std::string animation;                   ///< name, index or "none"; empty for the first
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
-    bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
+    Antialiasing antialiasing;  ///< of the raster pipeline
+    bool auxiliary = true;      ///< also albedo, normal, depth, variance, samples, ids
     /** Called between dispatches; return false to cancel: what is done is returned, `cancelled` set. */
     std::function<bool(const Progress&)> progress;
 };
@@ -83,6 +103,8 @@ struct RenderResult {
         double milliseconds = 0;
     };
     std::vector<PassTime> passes;
+    /** Work of the raster pipeline, by name: what its stages drew and left out, for all samples. */
+    std::vector<std::pair<std::string, std::uint64_t>> counters;
     std::vector<std::string> features;
     std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why
     std::vector<std::string> warnings;
