@@ -12,7 +12,7 @@ std::string RenderResult::json() const {
     Json work = Json::object();
     for (const auto& [name, count] : counters) work[name] = count;
     for (const auto& [what, why] : skipped) skippedParts.push_back({{"what", what}, {"why", why}});
-    const Json statistics = {
+    Json statistics = {
         {"version", version},
         {"device", device},
         {"scene", scene},
@@ -29,9 +29,9 @@ std::string RenderResult::json() const {
         {"truncated_paths", truncatedPaths},
         {"memory", {{"host_bytes", hostBytes}, {"device_bytes", deviceBytes}}},
         {"passes", passTimes},
-        {"counters", work},
         {"features", features},
         {"skipped", skippedParts}};
+    if (!counters.empty()) statistics["counters"] = work;
     // Names come from files and may not be UTF-8; numbers that JSON has no text for become null.
     return statistics.dump(2, ' ', false, Json::error_handler_t::replace);
 }
