@@ -31,6 +31,7 @@ struct Path {
     uint depth;        ///< scatterings so far
     uint sampleIndex;
     int source;        ///< slot of the triangle the ray leaves, -1 for the camera
+    int lightPlace;    ///< of the surface that the ray leaves, for the chances of lights there
 };
 
 /** A question to the scene: is the way to a light free, and what does it then bring? */
@@ -55,14 +56,19 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
              out ShadowRay shadow, out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, max(slot, 0));
-    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, environment);
+    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, path.lightPlace, environment);
     if (HAS_EMISSION) {
         const Emission e = emission(s.triangle.material, s.triangle.g, s.b);
         const bool emits = hit && (s.front || e.doubleSided);
         float weight = 1.0;
         if (NEXT_EVENT && HAS_AREA_LIGHTS) {
             const float cosine = abs(dot(s.face, path.direction));
-            const float sampled = cosine > 0.0 ? e.areaDensity * distance * distance / cosine : 0.0;
+#ifdef LIGHT_TABLES
+            const float areaDensity = lightAreaDensity(path.lightPlace, s.triangle.g);
+#else
+            const float areaDensity = e.areaDensity;
+#endif
+            const float sampled = cosine > 0.0 ? areaDensity * distance * distance / cosine : 0.0;
             weight = path.density < 0.0 ? 1.0 : path.density / (path.density + sampled);
         }
         path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);
@@ -78,7 +84,8 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
 
     shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if (LIGHT_COUNT > 0) {
-        const LightSample light = sampleLight(s.position, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
+        path.lightPlace = lightPlace(s.position, s.face);
+        const LightSample light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
         const float cosine = dot(s.shading, light.direction);
         const float scattered = cosine * INV_PI;
         const float weight = light.density > 0.0 ? light.density / (light.density + scattered) : 1.0;

@@ -88,6 +88,11 @@ struct PathTracer::Impl {
             buffers.push_back("uEnvironmentMap");
             spec.merge(scene_.environmentConstants());
         }
+        if (scene_.hasLightTables()) {
+            defines["LIGHT_TABLES"] = "1";
+            buffers.insert(buffers.end(), {"uLightSlots", "uLightCells", "uLightRanges", "uLightOfTriangle"});
+            spec.merge(scene_.lightTableConstants());
+        }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
@@ -190,7 +195,8 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     return {.tree = scene.triangleCount() > kUnrolledTriangles,
-            .sampleSurfaces = options.nextEventEstimation};
+            .sampleSurfaces = options.nextEventEstimation,
+            .lights = options.lights};
 }
 
 bool PathTracer::advance(std::uint32_t sampleEnd) {

@@ -37,6 +37,7 @@ struct PathTraceOptions {
     bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
     SamplerKind sampler = SamplerKind::Sobol;
     PixelFilter filter = PixelFilter::Box;
+    LightChoice lights = LightChoice::Adaptive;
     std::uint32_t seed = 0;
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */

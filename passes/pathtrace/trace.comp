@@ -68,6 +68,7 @@ Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     path.depth = 0u;
     path.sampleIndex = sampleIndex;
     path.source = -1;
+    path.lightPlace = 0;
     return path;
 }
 
@@ -92,10 +93,12 @@ void main() {
     const bool resumed = s7.w > 0.0;
     Path path = startPath(numbers, pixel, sampleIndex);
     if (resumed) {
-        path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w));
+        path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w), int(s5.w));
     }
     if (s7.w > 1.5) {
-        batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w, s5.w, s6.w, true);
+        // Each half has at most 2048 of a batch's samples.
+        const float countB = floor(s4.w * (1.0 / 4096.0));
+        batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w - 4096.0 * countB, countB, s6.w, true);
     }
 
     uint cameraRays = 0u, bounceRays = 0u, shadowRays = 0u, cutPaths = 0u, abandonedRays = 0u;
@@ -140,8 +143,8 @@ void main() {
             imageStore(uState, place + ivec2(1, 0), vec4(path.direction, path.density));
             imageStore(uState, place + ivec2(2, 0), vec4(path.throughput, float(path.depth)));
             imageStore(uState, place + ivec2(3, 0), vec4(path.radiance, float(path.source)));
-            imageStore(uState, place + ivec2(0, 1), vec4(batch.sumA, batch.countA));
-            imageStore(uState, place + ivec2(1, 1), vec4(batch.sumB, batch.countB));
+            imageStore(uState, place + ivec2(0, 1), vec4(batch.sumA, batch.countA + 4096.0 * batch.countB));
+            imageStore(uState, place + ivec2(1, 1), vec4(batch.sumB, float(path.lightPlace)));
             imageStore(uState, place + ivec2(2, 1), vec4(batch.squares, batch.rejected));
             imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, batch.shifted ? 2.0 : 1.0));
         }

@@ -44,8 +44,7 @@ PreparedScene::~PreparedScene() = default;
 PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Environment>& environment,
                                    const PackOptions& pack) {
     const SceneIdentity identity = identify(scene, environment);
-    if (prepared_ && identity == identity_ && pack.tree == pack_.tree &&
-        pack.sampleSurfaces == pack_.sampleSurfaces) {
+    if (prepared_ && identity == identity_ && pack == pack_) {
         return *prepared_;
     }
     prepared_.reset();  // before the new one: both need not fit the device

@@ -11,6 +11,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     : info_(packScene(scene, options)) {
     hostBytes_ = info_.bytes();
     const auto& environment = info_.environment;
+    hasLightTables_ = !info_.lightSlots.empty();
     constants_ = {{"HAS_NORMALS", !info_.normals.empty()},
                   {"HAS_COLORS", !info_.colors.empty()},
                   {"HAS_BASE_TEXTURES", info_.baseColorTextures},
@@ -23,6 +24,15 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
                   {"HAS_TRIANGLE_LIGHTS", info_.triangleLights},
                   {"LIGHT_COUNT", std::int32_t(info_.lightCount)},
                   {"LIGHT_BITS", std::int32_t(info_.lightBits)},
+                  {"LIGHT_SLOT_BITS", std::int32_t(info_.lightSlotBits)},
+                  {"LIGHT_CUTS", info_.lightCuts},
+                  {"LIGHT_GRID_X", info_.lightGridSize.x},
+                  {"LIGHT_GRID_Y", info_.lightGridSize.y},
+                  {"LIGHT_GRID_Z", info_.lightGridSize.z},
+                  {"LIGHT_ORIGIN_X", info_.lightGridOrigin.x},
+                  {"LIGHT_ORIGIN_Y", info_.lightGridOrigin.y},
+                  {"LIGHT_ORIGIN_Z", info_.lightGridOrigin.z},
+                  {"LIGHT_GRID_SCALE", info_.lightGridScale},
                   {"ENVIRONMENT_WIDTH", std::int32_t(info_.environmentSize[0])},
                   {"ENVIRONMENT_HEIGHT", std::int32_t(info_.environmentSize[1])},
                   {"ENVIRONMENT_ROW_BITS", std::int32_t(info_.environmentBits[0])},
@@ -48,6 +58,12 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uTextures", textures, Format::Undefined);
     upload("uTexels8", info_.texels8, Format::R32UI);
     upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
+    if (hasLightTables()) {
+        upload("uLightSlots", info_.lightSlots, Format::Undefined);
+        upload("uLightCells", info_.lightCells, Format::R32UI);
+        upload("uLightRanges", info_.lightRanges, Format::R32UI);
+        upload("uLightOfTriangle", info_.lightOfTriangle, Format::R32UI);
+    }
     if (hasEnvironmentImage()) upload("uEnvironmentMap", info_.environmentMap, Format::Undefined);
     upload("uInstanceFirst", info_.instanceFirst, Format::R32UI);
 }
@@ -76,6 +92,12 @@ SpecConstants DeviceScene::environmentConstants() const {
     if (!hasEnvironmentImage()) return {};
     return constants({"ENVIRONMENT_WIDTH", "ENVIRONMENT_HEIGHT", "ENVIRONMENT_ROW_BITS",
                       "ENVIRONMENT_COLUMN_BITS", "ENVIRONMENT_ROTATED"});
+}
+
+SpecConstants DeviceScene::lightTableConstants() const {
+    if (!hasLightTables()) return {};
+    return constants({"LIGHT_SLOT_BITS", "LIGHT_CUTS", "LIGHT_GRID_X", "LIGHT_GRID_Y", "LIGHT_GRID_Z",
+                      "LIGHT_ORIGIN_X", "LIGHT_ORIGIN_Y", "LIGHT_ORIGIN_Z", "LIGHT_GRID_SCALE"});
 }
 
 std::uint64_t DeviceScene::deviceBytes() const {

@@ -32,6 +32,11 @@ public:
     /** The ENVIRONMENT_... constants of shaders/scene/environment.glsl; none where it is constant. */
     SpecConstants environmentConstants() const;
 
+    /** Whether lights are chosen by tables: uLightSlots, uLightCells, uLightRanges and uLightOfTriangle are
+     * there, for kernels compiled with LIGHT_TABLES and these constants. */
+    bool hasLightTables() const { return hasLightTables_; }
+    SpecConstants lightTableConstants() const;
+
     /** What was packed, without the arrays (they are on the device) but for `textures`. */
     const PackedScene& info() const { return info_; }
     /** Bytes on the device. */
@@ -47,6 +52,7 @@ private:
     };
     PackedScene info_;
     std::uint64_t hostBytes_ = 0;
+    bool hasLightTables_ = false;
     std::vector<Named> buffers_;
     SpecConstants constants_;
 };

@@ -118,6 +118,11 @@ void environment(const Scene& scene, PackedScene& packed) {
     std::vector<AliasSlot> columns;
     const std::uint32_t columnBits = aliasBits(w);
     columns.reserve((std::size_t(h) + 1) << columnBits);
+    std::vector<glm::dvec2> turns(w);  // sine and cosine of the longitude of cells' middles
+    for (std::uint32_t x = 0; x < w; ++x) {
+        const double turn = 2.0 * pi * (0.5 - (x + 1.0) / w);
+        turns[x] = {std::sin(turn), std::cos(turn)};
+    }
     double total = 0;
     for (std::uint32_t row = 0; row <= h; ++row) {
         const double upper = row == 0 ? 0.0 : pi * (row - 0.5) / h;
@@ -134,6 +139,12 @@ void environment(const Scene& scene, PackedScene& packed) {
                        (brightness(x, above) + brightness(next, above) + brightness(x, below) +
                         brightness(next, below));
             rowWeight[row] += cells[x];
+            const double angle = 0.5 * (upper + lower);
+            const glm::dvec3 from(std::sin(angle) * turns[x].x, std::cos(angle),
+                                  std::sin(angle) * turns[x].y);
+            for (glm::length_t axis = 0; axis < 3; ++axis)
+                packed.environmentIrradiance[std::size_t(axis) * 2 + (from[axis] < 0 ? 1 : 0)] +=
+                    cells[x] * std::abs(from[axis]);
         }
         total += rowWeight[row];
         const AliasTable table = aliasTable(cells);
@@ -153,7 +164,7 @@ void environment(const Scene& scene, PackedScene& packed) {
     packed.environmentRotated = toMap != glm::mat3(1.0f);
     std::vector<glm::vec4>& out = packed.environmentMap;
     out.reserve(kEnvironmentHeader + texels.size() + rows.slots.size() + columns.size() / 2);
-    out.emplace_back(0.0f);
+    out.emplace_back(0.0f, glm::intBitsToFloat(-1), 0.0f, 0.0f);  // until it is in the light table
     for (glm::length_t r = 0; r < 3; ++r) out.emplace_back(toMap[0][r], toMap[1][r], toMap[2][r], 0.0f);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x)

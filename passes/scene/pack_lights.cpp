@@ -1,4 +1,5 @@
 #include "passes/scene/alias_table.hpp"
+#include "passes/scene/light_tables.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <glm/gtc/constants.hpp>
@@ -16,10 +17,15 @@ struct Candidate {
     double weight = 0;  ///< chance to be chosen, before normalisation: power, mean over RGB
     glm::dvec3 origin{0.0}, edge1{0.0}, edge2{0.0}, normal{0.0};
     glm::vec3 radiance{0.0f};
-    double weightPerArea = 0;
+    double weightPerArea = 0, area = 0;
     bool doubleSided = false;
     std::uint32_t g = 0, material = 0;
+    double environmentPower = 0;
+    bool isSurface() const { return kind == LightKind::Triangle || kind == LightKind::Parallelogram; }
 };
+
+/** Most lights that Adaptive chooses among by power. */
+constexpr std::size_t kFewLights = 2;
 
 double mean(const glm::dvec3& rgb) {
     return (rgb.x + rgb.y + rgb.z) / 3.0;
@@ -98,6 +104,7 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
         light.weightPerArea =
             glm::pi<double>() * mean(meanRadiance[index]) * (material.doubleSided ? 2.0 : 1.0);
         light.weight = light.weightPerArea * area;
+        light.area = area;
         light.g = std::uint32_t(g);
         light.material = index;
         lights.push_back(light);
@@ -145,8 +152,77 @@ void addPunctual(const Scene& scene, std::vector<Candidate>& lights) {
 void addEnvironment(const Scene& scene, const PackedScene& packed, std::vector<Candidate>& lights) {
     Candidate light;
     light.kind = LightKind::Environment;
+    light.environmentPower = packed.environmentPower;
     light.weight = glm::pi<double>() * square(boundingRadius(scene)) * packed.environmentPower;
     lights.push_back(light);
+}
+
+/** A light as lightTables() wants it. */
+LightSource sourceOf(const Candidate& light) {
+    using Shape = LightSource::Shape;
+    LightSource source;
+    source.power = light.weight;
+    source.normal = light.normal;
+    source.bothFaces = light.doubleSided;
+    source.centre = light.origin;
+    const double pi = glm::pi<double>();
+    switch (light.kind) {
+        case LightKind::Triangle:
+            source.centre += (light.edge1 + light.edge2) / 3.0;
+            source.radius = 0.4 * std::max(glm::length(light.edge1), glm::length(light.edge2));
+            source.strength = light.weight / pi;
+            break;
+        case LightKind::Parallelogram:
+            source.centre += 0.5 * (light.edge1 + light.edge2);
+            source.radius = 0.4 * std::max(glm::length(light.edge1), glm::length(light.edge2));
+            source.strength = light.weight / pi;
+            break;
+        case LightKind::Point:
+            source.shape = Shape::Point;
+            source.strength = mean(glm::dvec3(light.radiance));
+            break;
+        case LightKind::Spot:
+            source.shape = Shape::Spot;
+            source.strength = mean(glm::dvec3(light.radiance));
+            source.coneScale = light.edge2.x;
+            source.coneOffset = light.edge2.y;
+            break;
+        case LightKind::Directional:
+            source.shape = Shape::Directional;
+            source.strength = mean(glm::dvec3(light.radiance));
+            break;
+        case LightKind::Environment:
+            source.shape = Shape::Environment;
+            source.strength = light.environmentPower;
+            break;
+    }
+    return source;
+}
+
+/** Builds the tables that choose among the lights, and puts these in the tables' order. */
+void makeTables(std::vector<Candidate>& lights, std::span<const glm::vec3> positions, bool adaptive,
+                PackedScene& packed) {
+    std::vector<LightSource> sources;
+    for (const Candidate& light : lights) sources.push_back(sourceOf(light));
+    LightTables tables = lightTables(sources, positions, packed.environmentIrradiance, adaptive);
+    std::vector<Candidate> ordered;
+    for (std::uint32_t i : tables.order) ordered.push_back(lights[i]);
+    lights = std::move(ordered);
+    packed.lightSlots = std::move(tables.slots);
+    packed.lightCells = std::move(tables.cells);
+    packed.lightRanges = std::move(tables.ranges);
+    packed.lightSlotBits = tables.bits;
+    packed.lightGridSize = tables.size;
+    packed.lightGridOrigin = tables.origin;
+    packed.lightGridScale = tables.scale;
+    packed.lightCuts = tables.cuts;
+    packed.lightOfTriangle.assign(positions.size() / 3, 0);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].isSurface()) continue;
+        packed.lightOfTriangle[lights[i].g] = std::uint32_t(i);
+        if (lights[i].kind == LightKind::Parallelogram)
+            packed.lightOfTriangle[lights[i].g + 1] = std::uint32_t(i);
+    }
 }
 
 glm::vec4 texel(const glm::dvec3& v, float w) {
@@ -171,6 +247,11 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     packed.lightCount = std::uint32_t(candidates.size());
     if (candidates.empty()) return;
 
+    // With few lights the tables gain nothing that pays for reading them.
+    const std::size_t few = options.lights == LightChoice::Adaptive ? kFewLights : 1;
+    if (options.lights != LightChoice::Power && candidates.size() > few)
+        makeTables(candidates, positions, options.lights == LightChoice::Adaptive, packed);
+
     std::vector<double> weights;
     for (const Candidate& light : candidates) weights.push_back(light.weight);
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -178,7 +259,7 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     packed.lightBits = table.bits;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         const Candidate& light = candidates[i];
-        const bool surface = i < areaCount;
+        const bool surface = light.isSurface();
         const double chance = table.chance[i];
         const double density = surface ? light.weightPerArea / total : chance;
         // Error of a point on the surface from rounding its corners and the sum, along the normal; see
@@ -194,9 +275,10 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
         packed.lights.push_back(texel(light.edge2, std::uint32_t(light.kind)));
         packed.lights.push_back({light.radiance, float(light.doubleSided ? -density : density)});
         packed.lights.push_back(texel(light.normal, float(offset)));
-        packed.lights.push_back(
-            {glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material), float(chance), 0.0f});
-        if (light.kind == LightKind::Environment) packed.environmentMap[0].x = float(chance);
+        packed.lights.push_back({glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material),
+                                 float(chance), float(surface ? 1.0 / light.area : 0.0)});
+        if (light.kind == LightKind::Environment)
+            packed.environmentMap[0] = {float(chance), glm::uintBitsToFloat(std::uint32_t(i)), 0.0f, 0.0f};
         if (surface) packed.materials[std::size_t(light.material) * kMaterialTexels + 2].x = float(density);
     }
     // Slots of the alias table without a light of their own. A single light is taken without a table.

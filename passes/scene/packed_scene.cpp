@@ -58,7 +58,8 @@ void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, Pack
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
            bytesOf(texcoords) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) + bytesOf(textures) +
-           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap);
+           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) +
+           bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {

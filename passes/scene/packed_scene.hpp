@@ -4,6 +4,7 @@
  * and lights. Host only, so that packing is tested without a device; DeviceScene uploads the result. Every
  * array is a whole number of 16-byte texels and is described beside its accessors in shaders/scene.
  */
+#include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
 
 #include <glm/glm.hpp>
@@ -35,6 +36,9 @@ struct PackOptions {
     bool tree = true;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
     bool sampleSurfaces = true;
+    /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
+    LightChoice lights = LightChoice::Power;
+    bool operator==(const PackOptions&) const = default;
 };
 
 /** Arrays for the device. "Slot" is a triangle's place in `triangles`; "g" is its global index in scene
@@ -66,11 +70,22 @@ struct PackedScene {
     std::array<std::uint32_t, 2> environmentBits{1, 1};  ///< of the tables over rows, and over a row's cells
     bool environmentRotated = false;
     double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
+    std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
     std::uint32_t triangleCount = 0;
     std::uint32_t lightCount = 0;
-    std::uint32_t lightBits = 1;    ///< the light table has 2^lightBits rows, filler after the lights
-    std::uint32_t nodeCount = 0;    ///< of the tree, holes of its blocks included
-    std::uint32_t treeDepth = 0;    ///< levels; bounds the traversal stack
+    std::uint32_t lightBits = 1;  ///< the light table has 2^lightBits rows, filler after the lights
+    std::uint32_t nodeCount = 0;  ///< of the tree, holes of its blocks included
+    std::uint32_t treeDepth = 0;  ///< levels; bounds the traversal stack
+    /** Tables that choose lights, see passes/scene/light_tables.hpp; empty where they are chosen by power. */
+    std::vector<glm::uvec4> lightSlots;
+    std::vector<std::uint32_t> lightCells;       ///< per cell and axis: number of a table
+    std::vector<std::uint32_t> lightRanges;      ///< of cuts
+    std::vector<std::uint32_t> lightOfTriangle;  ///< per g: row of the light table, 0 where it is no light
+    std::uint32_t lightSlotBits = 1;
+    glm::ivec3 lightGridSize{0};  ///< cells; 0: one table for all places
+    glm::vec3 lightGridOrigin{0.0f};
+    float lightGridScale = 0;  ///< cells per metre
+    bool lightCuts = false;
     bool areaLights = false;        ///< some light in the table is a surface
     bool triangleLights = false;    ///< some surface in the table is no parallelogram
     bool punctualLights = false;    ///< some light in the table is punctual

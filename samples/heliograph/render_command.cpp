@@ -135,7 +135,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         return;
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
-    for (const char* option : {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--no-nee"}) {
+    for (const char* option :
+         {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--lights", "--no-nee"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -312,6 +313,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
     addChoice<SamplerKind>(command, "--sampler", options.sampler,
                            {{"sobol", SamplerKind::Sobol}, {"independent", SamplerKind::Independent}},
                            "sobol (default): Owen-scrambled; independent");
+    addChoice<LightChoice>(command, "--lights", options.lights,
+                           {{"adaptive", LightChoice::Adaptive},
+                            {"power", LightChoice::Power},
+                            {"uniform", LightChoice::Uniform}},
+                           "Choice among lights: adaptive (default) by place and normal; power; uniform");
     command->add_flag("--no-nee", arguments->noNextEvent, "Trace without next-event estimation");
     addChoice<bool>(command, "--cull", options.cullBackFaces, {{"none", false}, {"back", true}},
                     "none (default) or back: faces the raster pipeline leaves out");

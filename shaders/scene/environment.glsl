@@ -16,7 +16,8 @@
 #include "shaders/shared/trigonometry.glsl"
 
 /**
- * Header (kEnvironmentHeader texels): chance of the light table to choose the environment; rows of the rotation from
+ * Header (kEnvironmentHeader texels): chance of the light table to choose the environment, bits of its row there
+ * (-1: none); rows of the rotation from
  * the world to the image. Then width x height texels: radiance RGB, density over solid angle. Then 2^ROW_BITS slots
  * of the alias table over rows of cells: bits of threshold, bits of alias, h of the row's upper boundary, extent of
  * the row in h (row = slot). Then of each row 2^COLUMN_BITS slots of the table over its cells, two a texel.

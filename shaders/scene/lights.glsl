@@ -9,6 +9,14 @@
 #ifdef ENVIRONMENT_IMAGE
 #include "shaders/scene/environment.glsl"
 #endif
+#ifdef LIGHT_TABLES
+#include "shaders/scene/light_tables.glsl"
+#else
+/** Lights are chosen by power, whatever the place. */
+int lightPlace(vec3 p, vec3 n) {
+    return 0;
+}
+#endif
 
 /**
  * 6 texels a light (kLightTexels):
@@ -18,7 +26,7 @@
  * 3: radiance (intensity; irradiance) RGB | chance density per area, negative where both faces emit
  *    (punctual: chance to be chosen)
  * 4: unit normal (spot, directional: direction of the light) | offset against rounding, along the normal
- * 5: bits of g, bits of material, chance to be chosen, 0
+ * 5: bits of g, bits of material, chance to be chosen, 1 / area
  */
 layout(set = 0, binding = 26) uniform usamplerBuffer uLights;
 const int LIGHT_TEXELS = 6;
@@ -44,10 +52,14 @@ struct LightSample {
     float density;      ///< over solid angle; 0 for a punctual light, which no ray finds
 };
 
-/** Samples light for a receiver at p. `choice` picks the light, `random` the point on it: 32 random bits each. A
+/** Samples light for a receiver at p, which is in `place` (lightPlace). `choice` picks the light, `random` the point on it: 32 random bits each. A
  * sample with zero radiance brings nothing. */
-LightSample sampleLight(vec3 p, uint choice, uvec2 random) {
+LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
     int row = 0;
+#ifdef LIGHT_TABLES
+    float chance;
+    row = chooseLight(place, choice, chance);
+#else
     if (LIGHT_COUNT > 1) {
         row = int(choice >> (32 - LIGHT_BITS));
         const uint fraction = choice & ((1u << (32 - LIGHT_BITS)) - 1u);
@@ -55,12 +67,18 @@ LightSample sampleLight(vec3 p, uint choice, uvec2 random) {
         const int other = int(texelFetch(uLights, row * LIGHT_TEXELS + 1).w);
         row = fraction < threshold ? row : other;
     }
+#endif
     const int first = row * LIGHT_TEXELS;
     const vec4 corner = uintBitsToFloat(LIGHT_ROW(first, 0));
     const vec4 edge1 = uintBitsToFloat(LIGHT_ROW(first, 1));
     const uvec4 edge2Bits = LIGHT_ROW(first, 2);
     const vec3 edge2 = uintBitsToFloat(edge2Bits.xyz);
-    const vec4 strength = uintBitsToFloat(LIGHT_ROW(first, 3));
+    vec4 strength = uintBitsToFloat(LIGHT_ROW(first, 3));
+#ifdef LIGHT_TABLES
+    // The density per area under this place's chances, or the chance.
+    const float perArea = uintBitsToFloat(LIGHT_ROW(first, 5).w);
+    strength.w = chance * (perArea > 0.0 ? (strength.w < 0.0 ? -perArea : perArea) : 1.0);
+#endif
     const vec4 facing = uintBitsToFloat(LIGHT_ROW(first, 4));
     const uint kind = edge2Bits.w;
 
@@ -125,13 +143,31 @@ LightSample sampleLight(vec3 p, uint choice, uvec2 random) {
     return result;
 }
 
+#ifdef LIGHT_TABLES
+/** Density per area with which sampleLight() takes a point of the light that triangle g belongs to. */
+float lightAreaDensity(int place, int g) {
+    const int row = int(texelFetch(uLightOfTriangle, g).x);
+    return lightChance(place, row) * uintBitsToFloat(LIGHT_ROW(row * LIGHT_TEXELS, 5).w);
+}
+#endif
+#if defined(LIGHT_TABLES) && defined(ENVIRONMENT_IMAGE)
+float environmentChance(int place) {
+    const int row = floatBitsToInt(texelFetch(uEnvironmentMap, 0).y);
+    return row < 0 ? 0.0 : lightChance(place, row);
+}
+#endif
+
 /** What a ray that leaves the scene brings: `constant` where the environment is no image, else the image's radiance
  * weighted against sampleLight(). `density`: over solid angle, with which the direction was drawn; negative where
  * light was not sampled for it. */
-vec3 environmentLight(vec3 direction, float density, vec3 constant) {
+vec3 environmentLight(vec3 direction, float density, int place, vec3 constant) {
 #ifdef ENVIRONMENT_IMAGE
     const EnvironmentRadiance from = environmentAt(direction);
+#ifdef LIGHT_TABLES
+    const float sampled = from.density * environmentChance(place);
+#else
     const float sampled = from.density * texelFetch(uEnvironmentMap, 0).x;
+#endif
     return from.radiance * (density < 0.0 ? 1.0 : density / (density + sampled));
 #else
     return constant;

@@ -111,7 +111,7 @@ TEST(Cornell, IsLambertian) {
 }
 
 TEST(Samples, AreFour) {
-    EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "instances", "materials", "terrain"}));
+    EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "instances", "lights500", "materials", "terrain"}));
 }
 
 class EverySample : public testing::TestWithParam<std::string> {};

@@ -20,6 +20,9 @@ namespace helio {
 enum class Pipeline : std::uint8_t { Path, Raster };
 enum class PixelFilter : std::uint8_t { Box, Tent, Gaussian, BlackmanHarris };
 enum class SamplerKind : std::uint8_t { Sobol, Independent };
+/** How one of many lights is chosen: by what each brings to the place (tables over space and normal, built
+ * where there are more than a few lights), by power, or each with the same chance. */
+enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
 
 /** State of a running render, for progress displays. */
 struct Progress {
@@ -60,6 +63,7 @@ struct RenderOptions {
     PixelFilter filter = PixelFilter::Box;
     SamplerKind sampler = SamplerKind::Sobol;
     bool nextEventEstimation = true;
+    LightChoice lights = LightChoice::Adaptive;
     std::uint32_t seed = 0;
     std::string camera;                      ///< name or index; empty for the first
     double frameTime = 0;                    ///< seconds; the scene is shown as posed() makes it
