@@ -20,9 +20,11 @@ glm::vec4 withBits(const glm::vec3& v, std::uint32_t bits) {
     return {v, glm::uintBitsToFloat(bits)};
 }
 
-/** What the packed arrays cannot show, named once each. Only materials that some instance uses count. A pass
- * that learns to shade one of these takes its line out. */
-void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed) {
+}  // namespace
+
+// A pass that learns to shade one of these takes its line out.
+std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& scene,
+                                                                const std::vector<bool>& materialUsed) {
     std::set<std::pair<std::string, std::string>> named;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (!materialUsed[i]) continue;
@@ -50,10 +52,8 @@ void nameSkipped(const Scene& scene, const std::vector<bool>& materialUsed, Pack
         skipIf(m.scattering.has_value(), "scattering models");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
-    packed.skipped.assign(named.begin(), named.end());
+    return {named.begin(), named.end()};
 }
-
-}  // namespace
 
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
@@ -94,7 +94,7 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
         packed.triangles.push_back(withBits(positions[g * 3 + 1], surfaces[g].instance));
         packed.triangles.push_back(withBits(positions[g * 3 + 2], surfaces[g].material));
     }
-    nameSkipped(scene, materialUsed, packed);
+    packed.skipped = pack::notShown(scene, materialUsed);
     return packed;
 }
 

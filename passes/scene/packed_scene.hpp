@@ -126,6 +126,11 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
 /** The environment, and where it is an image its texels and tables. Before the lights, of which it is one. */
 void environment(const Scene& scene, PackedScene& packed);
 
+/** "WHAT", "WHY" of what materials ask for and kernels do not show, once each; of the materials in use alone.
+ */
+std::vector<std::pair<std::string, std::string>> notShown(const Scene& scene,
+                                                          const std::vector<bool>& materialUsed);
+
 /** Mean linear RGB of a texture used as colour. */
 glm::dvec3 meanColor(const TextureImage& image);
 }  // namespace pack

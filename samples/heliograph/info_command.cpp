@@ -2,9 +2,9 @@
 #include "console.hpp"
 #include "interrupts.hpp"
 #include "progress_display.hpp"
+#include "scene_description.hpp"
 
 #include <heliograph/device.hpp>
-#include <heliograph/features.hpp>
 #include <heliograph/scene.hpp>
 #include <heliograph/version.hpp>
 
@@ -16,8 +16,6 @@
 
 namespace helio::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /** Names come from files and may not be UTF-8. */
 std::string dump(const Json& json, int indent = -1) {
@@ -60,56 +58,6 @@ void printDevice(std::size_t index, const DeviceInfo& device) {
                   capability.present
                       ? capability.value
                       : (capability.required ? "required: " : "without it: ") + capability.whenMissing);
-    }
-}
-
-Json describeScene(const Scene& scene) {
-    const SceneFeatures features(scene);
-    const Scene::Bounds bounds = scene.bounds();
-    Json absent = Json::array(), skipped = Json::array();
-    for (const SceneFeatures::Absent& feature : features.absent()) {
-        absent.push_back({{"what", feature.name}, {"why", feature.why}});
-    }
-    for (const auto& [what, why] : scene.skipped) skipped.push_back({{"what", what}, {"why", why}});
-    Json cameras = Json::array();
-    for (const PlacedCamera& camera : scene.placedCameras()) {
-        cameras.push_back(scene.cameras[std::size_t(camera.camera)].name);
-    }
-    Json result = {{"scene", scene.name},
-                   {"meshes", scene.meshes.size()},
-                   {"instances", scene.instances().size()},
-                   {"triangles", scene.triangleCount()},
-                   {"materials", scene.materials.size()},
-                   {"textures", scene.textures.size()},
-                   {"images", scene.images.size()},
-                   {"cameras", cameras},
-                   {"lights", scene.placedLights().size()},
-                   {"environment", scene.environment.has_value()},
-                   {"needs", features.present()},
-                   {"does_not_need", absent},
-                   {"skipped", skipped},
-                   {"warnings", scene.warnings}};
-    if (!bounds.empty()) {
-        result["bounds"] = {{"lower", {bounds.lower.x, bounds.lower.y, bounds.lower.z}},
-                            {"upper", {bounds.upper.x, bounds.upper.y, bounds.upper.z}}};
-    }
-    return result;
-}
-
-void printScene(const Json& scene) {
-    for (const auto& [key, value] : scene.items()) {
-        if (!value.is_array()) {
-            printLine("{}: {}", key, value.is_string() ? value.get<std::string>() : dump(value));
-            continue;
-        }
-        printLine("{}:{}", key, value.empty() ? " none" : "");
-        for (const Json& entry : value) {
-            if (entry.is_object()) {
-                printLine("  {}: {}", entry["what"].get<std::string>(), entry["why"].get<std::string>());
-            } else {
-                printLine("  {}", entry.get<std::string>());
-            }
-        }
     }
 }
 

@@ -97,6 +97,9 @@ expect 'info json of a name that is not UTF-8' 0 '"scene"' "$program" info --jso
 expect 'info' 0 'Vulkan' "$program" info
 expect 'info json' 0 '"capabilities"' "$program" info --json
 expect 'info scene' 0 'triangles' "$program" info sample:cornell
+expect 'info of the materials' 0 'emission: 1' "$program" info sample:cornell
+expect 'info of the images' 0 '"format": "8 bits"' "$program" info --json sample:terrain
+expect 'info of what is left out' 0 '"skipped"' "$program" info --json sample:materials
 
 for pipeline in path raster; do
     expect "$pipeline with validation" 0 '' render --pipeline $pipeline --validate -o $pipeline.exr -o $pipeline.png --stats $pipeline.json --graph $pipeline.dot

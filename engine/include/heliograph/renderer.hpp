@@ -119,6 +119,10 @@ struct RenderResult {
     std::string json() const;
 };
 
+/** What a scene asks for and the path pipeline would leave out: "WHAT", "WHY", the importer's included. Needs
+ * no device. The raster pipeline leaves out more, see RenderResult::skipped. */
+std::vector<std::pair<std::string, std::string>> leftOut(const Scene& scene);
+
 /** Renders scenes on one device. Keeps what a later render can use again. */
 class Renderer {
 public:
