@@ -14,6 +14,7 @@
 
 layout(constant_id = 0) const uint SAMPLER_KIND = SAMPLER_SOBOL;
 layout(constant_id = 1) const bool NEXT_EVENT = true;
+layout(constant_id = 5) const uint SAMPLER_STRATA = 0u;  ///< see startSample()
 
 /** Roulette keeps a path with chance min(1, ROULETTE * throughput): chances near the throughput itself end
  * paths that would still have carried light cheaply. The first scattering is spared: dark surfaces would show

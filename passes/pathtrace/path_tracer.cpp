@@ -10,6 +10,7 @@
 #include <heliograph_kernels/pathtrace.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstring>
 
@@ -95,6 +96,10 @@ struct PathTracer::Impl {
         }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
+        const bool usesStrata =
+            options_.sampler == SamplerKind::Stratified || options_.sampler == SamplerKind::SobolBlue;
+        // Of the two halves of a pixel's samples each.
+        if (usesStrata) spec["SAMPLER_STRATA"] = std::uint32_t(std::bit_width((options_.samples - 1) / 2));
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         spec["COUNT_TURNS"] = !unrolled_;
         graph.compute("trace", kernel(shaders::trace, defines), {.spec = spec})

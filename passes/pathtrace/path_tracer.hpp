@@ -36,6 +36,7 @@ struct PathTraceOptions {
     std::uint32_t maxDepth = kUnlimitedDepth;    ///< scatterings at most: 0 emission only, 1 direct light
     bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
     SamplerKind sampler = SamplerKind::Sobol;
+    std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;
     LightChoice lights = LightChoice::Adaptive;
     std::uint32_t seed = 0;

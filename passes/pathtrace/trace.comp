@@ -75,7 +75,8 @@ Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
 void main() {
     const uvec2 pixel = tilePixel(parameters.size);
     const bool inside = all(lessThan(pixel, parameters.size));
-    const uint pixelIndex = pixel.y * parameters.size.x + pixel.x;
+    const uint pixelIndex = SAMPLER_KIND == SAMPLER_SOBOL_BLUE ? mortonCode(pixel.x, pixel.y)
+                                                               : pixel.y * parameters.size.x + pixel.x;
     const ivec2 place = ivec2(pixel) * ivec2(4, 2);
     const ivec2 filmPixel = ivec2(pixel);
 
@@ -89,7 +90,7 @@ void main() {
     FilmPixel stored = loadFilm(filmPixel);
     FilmBatch batch = startFilmBatch(stored);
     uint sampleIndex = uint(s0.w);
-    PixelSampler numbers = startSample(SAMPLER_KIND, pixelIndex, sampleIndex, parameters.seed);
+    PixelSampler numbers = startSample(SAMPLER_KIND, pixelIndex, sampleIndex, parameters.seed, SAMPLER_STRATA);
     const bool resumed = s7.w > 0.0;
     Path path = startPath(numbers, pixel, sampleIndex);
     if (resumed) {
@@ -121,7 +122,7 @@ void main() {
         if (!alive) {
             addFilmSample(batch, path.sampleIndex, path.radiance);
             const uint next = path.sampleIndex + 1u;
-            numbers = startSample(SAMPLER_KIND, pixelIndex, next, parameters.seed);
+            numbers = startSample(SAMPLER_KIND, pixelIndex, next, parameters.seed, SAMPLER_STRATA);
             path = startPath(numbers, pixel, next);
             cameraRays += next < parameters.sampleEnd ? 1u : 0u;
         }

@@ -158,6 +158,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
                           : std::uint32_t(std::min<std::int64_t>(options.maxDepth, kUnlimitedDepth));
     result.nextEventEstimation = options.nextEventEstimation;
     result.sampler = options.sampler;
+    result.samples = options.samples;
     result.lights = options.lights;
     result.filter = options.filter;
     result.seed = options.seed;

@@ -310,9 +310,15 @@ void addRenderCommand(CLI::App& app, Command& run) {
                             {"gaussian", PixelFilter::Gaussian},
                             {"blackman-harris", PixelFilter::BlackmanHarris}},
                            "Pixel filter: box (default), tent, gaussian, blackman-harris");
-    addChoice<SamplerKind>(command, "--sampler", options.sampler,
-                           {{"sobol", SamplerKind::Sobol}, {"independent", SamplerKind::Independent}},
-                           "sobol (default): Owen-scrambled; independent");
+    addChoice<SamplerKind>(
+        command, "--sampler", options.sampler,
+        {{"sobol", SamplerKind::Sobol},
+         {"sobol-blue", SamplerKind::SobolBlue},
+         {"halton", SamplerKind::Halton},
+         {"stratified", SamplerKind::Stratified},
+         {"independent", SamplerKind::Independent}},
+        "sobol (default): Owen-scrambled; sobol-blue: error as blue noise over the screen; "
+        "halton; stratified; independent");
     addChoice<LightChoice>(command, "--lights", options.lights,
                            {{"adaptive", LightChoice::Adaptive},
                             {"power", LightChoice::Power},

@@ -25,13 +25,17 @@ std::vector<uint> counting(uint count, uint step = 1, uint first = 0) {
 TEST(SamplerOnDevice, GivesTheHostsBits) {
     const std::vector<uint> pixels = counting(20000, 2654435761u), samples = counting(20000, 7),
                             dimensions = counting(20000, 3);
-    for (const uint kind : {SAMPLER_SOBOL, SAMPLER_INDEPENDENT}) {
-        const std::string name = kind == SAMPLER_SOBOL ? "SAMPLER_SOBOL" : "SAMPLER_INDEPENDENT";
+    const std::vector<std::string> names = {"SAMPLER_SOBOL", "SAMPLER_INDEPENDENT", "SAMPLER_HALTON",
+                                            "SAMPLER_STRATIFIED", "SAMPLER_SOBOL_BLUE"};
+    for (uint kind = 0; kind < names.size(); ++kind) {
+        const std::string& name = names[kind];
         const std::vector<glm::vec2> got = test::runOnDevice<glm::vec2>(
-            "shaders/sampling/sampler.glsl", "sample2D(" + name + ", startSample(" + name + ", a, b, 9u), c)",
-            pixels, samples, dimensions);
+            "shaders/sampling/sampler.glsl",
+            "sample2D(" + name + ", startSample(" + name + ", a, b, 9u, 5u), c % 20u)", pixels, samples,
+            dimensions);
         for (std::size_t i = 0; i < got.size(); ++i) {
-            const Vec2 wanted = sample2D(kind, startSample(kind, pixels[i], samples[i], 9), dimensions[i]);
+            const Vec2 wanted =
+                sample2D(kind, startSample(kind, pixels[i], samples[i], 9, 5), dimensions[i] % 20u);
             ASSERT_EQ(got[i], wanted) << name << " pixel " << pixels[i] << " sample " << samples[i];
         }
     }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -59,6 +60,26 @@ TEST(PathDeterminism, BudgetsDoNotMatter) {
             EXPECT_EQ(parts.counters.cameraRays, whole.counters.cameraRays);
         }
         EXPECT_EQ(whole.counters.cameraRays, 45u * 37u * 24u);
+    }
+}
+
+/** Every sampler converges to one picture. */
+TEST(PathDeterminism, SamplersAgree) {
+    PathTraceOptions o = options(30000);
+    o.sampler = SamplerKind::Independent;
+    o.samples = 256;
+    const auto mean = [&](const Traced& image) { return estimate(image, 1, [](std::size_t) { return true; }); };
+    const Scene scene = load("sample:cornell");
+    const Estimate truth = mean(trace(scene, o, 256));
+    for (SamplerKind kind :
+         {SamplerKind::Sobol, SamplerKind::Halton, SamplerKind::Stratified, SamplerKind::SobolBlue}) {
+        o.sampler = kind;
+        const Estimate e = mean(trace(scene, o, 256));
+        // Stratified samples err less than their variance says: the interval is wider than need be.
+        const double z = (e.mean - truth.mean) / std::hypot(e.error, truth.error);
+        fmt::print("sampler {}: {:.5f} +- {:.5f}, z {:+.2f}\n", int(kind), e.mean, e.error, z);
+        EXPECT_LT(std::abs(z), 4.0) << int(kind);
+        EXPECT_LT(e.error, 0.01 * e.mean);
     }
 }
 

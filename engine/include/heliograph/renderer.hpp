@@ -19,7 +19,10 @@ namespace helio {
 
 enum class Pipeline : std::uint8_t { Path, Raster };
 enum class PixelFilter : std::uint8_t { Box, Tent, Gaussian, BlackmanHarris };
-enum class SamplerKind : std::uint8_t { Sobol, Independent };
+/** Where samples are taken; shaders/sampling/sampler.glsl says how. The default is Owen-scrambled Sobol,
+ * independent from pixel to pixel; SobolBlue correlates neighbours so that error is blue noise over the
+ * screen. */
+enum class SamplerKind : std::uint8_t { Sobol, Independent, Halton, Stratified, SobolBlue };
 /** How one of many lights is chosen: by what each brings to the place (tables over space and normal, built
  * where there are more than a few lights), by power, or each with the same chance. */
 enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
