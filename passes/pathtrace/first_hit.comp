@@ -1,10 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-/** @file What the ray through each pixel's centre meets first: ids, depth, shading normal, base colour. */
+/** @file What the ray through each pixel's centre meets first: ids, depth, shading normal, base
+ * colour (what a surface is tinted by, be it diffuse, metal or glass). Holes of alpha masks are seen through, blended
+ * surfaces count as opaque. */
 #include "passes/pathtrace/camera.glsl"
 #include "passes/pathtrace/surface.glsl"
-#include "shaders/intersection/scene_hit.glsl"
+#include "passes/pathtrace/see_through.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -26,7 +28,7 @@ void main() {
     cameraRay(parameters.camera, vec2(pixel) + 0.5, parameters.size, origin, direction);
     float distance;
     int slot;
-    closestHit(origin, direction, -1, distance, slot);
+    closestSurface(origin, direction, -1, 0u, true, distance, slot);
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(origin, direction, max(slot, 0));
     const int first = int(texelFetch(uInstanceFirst, s.triangle.instance).x);

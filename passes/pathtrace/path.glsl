@@ -4,12 +4,15 @@
  * One step of a light path: what is added where a ray arrives, and how the path goes on. Knows nothing of how
  * paths are scheduled. Veach, "Robust Monte Carlo methods for light transport simulation", 1997.
  *
- * Surfaces are Lambertian on both faces. Light is found in two ways, by sampling the light table and by rays
+ * Surfaces scatter on both faces, by lambert_bsdf.glsl where all are Lambertian, else by material_bsdf.glsl. Light is found in two ways, by sampling the light table and by rays
  * that happen to arrive at it, each weighted by the balance heuristic; NEXT_EVENT false leaves the second only.
  */
-#include "passes/pathtrace/surface.glsl"
+#ifdef SURFACE_MATERIALS
+#include "passes/pathtrace/material_bsdf.glsl"
+#else
+#include "passes/pathtrace/lambert_bsdf.glsl"
+#endif
 #include "shaders/sampling/sampler.glsl"
-#include "shaders/sampling/warp.glsl"
 #include "shaders/scene/lights.glsl"
 
 layout(constant_id = 0) const uint SAMPLER_KIND = SAMPLER_SOBOL;
@@ -20,15 +23,13 @@ layout(constant_id = 5) const uint SAMPLER_STRATA = 0u;  ///< see startSample()
  * paths that would still have carried light cheaply. The first scattering is spared: dark surfaces would show
  * black pixels under a sky, at 2.3 times the cost for the same error (FlightHelmet in a white furnace). */
 const float ROULETTE = 3.0;
-/** Dimensions of the sampler that one scattering takes: point on a light, direction, (light, roulette). */
-const uint DIMENSIONS_PER_SCATTERING = 3u;
 
 struct Path {
     vec3 origin;
     vec3 direction;    ///< unit
     vec3 throughput;
     vec3 radiance;     ///< gathered so far
-    float density;     ///< of the direction over solid angle; negative for a camera ray
+    float density;     ///< of the direction over solid angle; negative where no light sampling finds it (camera, mirrors)
     uint depth;        ///< scatterings so far
     uint sampleIndex;
     int source;        ///< slot of the triangle the ray leaves, -1 for the camera
@@ -57,6 +58,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
              out ShadowRay shadow, out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, max(slot, 0));
+    if (hit) path.throughput *= throughMedium(s, path.direction, path.source, distance);
     if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, path.lightPlace, environment);
     if (HAS_EMISSION) {
         const Emission e = emission(s.triangle.material, s.triangle.g, s.b);
@@ -75,38 +77,38 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);
     }
 
-    const vec3 albedo = baseColor(s.triangle.material, s.triangle.g, s.b).rgb;
-    const bool scatters = hit && largestOf(albedo) > 0.0;
-    cut = scatters && path.depth >= maxDepth;
-    bool alive = scatters && !cut;
     const uint dimension = DIMENSION_PATH + path.depth * DIMENSIONS_PER_SCATTERING;
+    const vec2 lobe = chooseLobe(SAMPLER_KIND, numbers, dimension);
+    const SurfaceBsdf bsdf = surfaceBsdf(s, path.direction, lobe.y, path.throughput);
+    if (hit) path.radiance += path.throughput * ownLight(bsdf);
+    const bool goesOn = hit && scatters(bsdf);
+    cut = goesOn && path.depth >= maxDepth;
+    bool alive = goesOn && !cut;
     const uvec2 choice = sampleBits2D(SAMPLER_KIND, numbers, dimension + 2u);
-    const vec3 start = s.position + s.face * s.offset;
 
-    shadow = ShadowRay(start, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
+    shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if (LIGHT_COUNT > 0) {
         path.lightPlace = lightPlace(s.position, s.face);
         const LightSample light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
-        const float cosine = dot(s.shading, light.direction);
-        const float scattered = cosine * INV_PI;
-        const float weight = light.density > 0.0 ? light.density / (light.density + scattered) : 1.0;
-        shadow.radiance = path.throughput * albedo * light.radiance * (scattered * weight);
+        const SurfaceValue scattered = surfaceValue(bsdf, s, light.direction);
+        const float weight = light.density > 0.0 ? light.density / (light.density + scattered.density) : 1.0;
+        shadow.origin = leaving(s, light.direction);
+        shadow.radiance = path.throughput * scattered.weight * light.radiance * (scattered.density * weight);
         shadow.target = light.triangles;
-        shadow.direction = light.infinite ? light.direction : light.target - start;
-        const bool asks = alive && cosine > 0.0 && dot(s.face, light.direction) > 0.0 &&
-                          largestOf(light.radiance) > 0.0;
+        shadow.direction = light.infinite ? light.direction : light.target - shadow.origin;
+        const bool asks = alive && scattered.density > 0.0 && largestOf(light.radiance) > 0.0;
         shadow.limit = asks ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
     }
 
-    float cosine;
-    path.direction = cosineDirection(s.shading, sample2D(SAMPLER_KIND, numbers, dimension + 1u), cosine);
-    path.density = cosine * INV_PI;
-    path.throughput *= albedo;
-    path.origin = start;
+    const SurfaceSample next = sampleSurface(bsdf, s, sample2D(SAMPLER_KIND, numbers, dimension + 1u), lobe.x);
+    path.direction = next.direction;
+    path.density = next.density;
+    path.throughput *= next.weight;
+    path.origin = leaving(s, next.direction);
     path.source = slot;
     path.depth += 1u;
     const float keep = path.depth < 2u ? 1.0 : min(1.0, ROULETTE * largestOf(path.throughput));
-    alive = alive && dot(s.face, path.direction) > 0.0 && unitFloat(choice.y) < keep;
+    alive = alive && next.goes && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;
 }

@@ -3,6 +3,7 @@
 #include "passes/pathtrace/camera_frame.hpp"
 #include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
+#include "passes/scene/material_layout.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -13,6 +14,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <map>
 
 namespace helio {
 namespace {
@@ -27,8 +29,9 @@ static_assert(sizeof(DeviceCounters) == 48);
 const std::vector<std::string_view> kSurfaceBuffers = {"uTriangles", "uNodes",   "uNormals",
                                                        "uTexcoords", "uColors",  "uMaterials",
                                                        "uTextures",  "uTexels8", "uTexelsFloat"};
-const std::vector<std::string_view> kSurfaceConstants = {"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES",
-                                                         "HAS_FLOAT_TEXTURES", "TRIANGLE_COUNT"};
+const std::vector<std::string_view> kSurfaceConstants = {"HAS_NORMALS",         "HAS_COLORS",
+                                                         "HAS_BASE_TEXTURES",   "HAS_FLOAT_TEXTURES",
+                                                         "HAS_LINEAR_TEXTURES", "TRIANGLE_COUNT"};
 
 /** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
 std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size) {
@@ -55,6 +58,8 @@ struct PathTracer::Impl {
         const DeviceCounters zero{};
         counters_.upload(&zero, sizeof zero);
         skipped_ = scene_.info().skipped;
+        if (scene_.info().materialFeatures != 0)
+            materialDefines_["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
         if (unrolled_) generated_ = unrolledScene(scene_.info().triangles, scene_.info().lights);
         declareTrace(film);
@@ -64,13 +69,22 @@ struct PathTracer::Impl {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
         spec["ORTHOGRAPHIC"] = orthographic_;
+        if (!materialDefines_.empty()) spec.merge(scene_.constants({"ALBEDO_TABLES"}));
         return spec;
     }
 
-    /** The kernel as built, or with the scene written out and what needs bindings of its own. */
-    Kernel kernel(const Kernel& built, const std::map<std::string, std::string>& defines = {}) const {
+    /** The kernel as built, or for more than diffuse surfaces, with what needs bindings of its own, or with
+     * the scene written out. */
+    Kernel kernel(const Kernel& built, std::map<std::string, std::string> defines = {}) const {
+        defines.insert(materialDefines_.begin(), materialDefines_.end());
         if (!unrolled_ && defines.empty()) return built;
         return compileVariant(built, {.defines = defines, .generated = generated_});
+    }
+
+    std::vector<std::string_view> surfaceBuffers() const {
+        std::vector<std::string_view> names = kSurfaceBuffers;
+        if (!materialDefines_.empty()) names.push_back("uTangents");
+        return names;
     }
 
     void declareTrace(Film& film) {
@@ -101,9 +115,10 @@ struct PathTracer::Impl {
         // Of the two halves of a pixel's samples each.
         if (usesStrata) spec["SAMPLER_STRATA"] = std::uint32_t(std::bit_width((options_.samples - 1) / 2));
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
-        spec["COUNT_TURNS"] = !unrolled_;
+        const bool seesThrough = (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
+        spec["COUNT_TURNS"] = !unrolled_ || seesThrough;
         graph.compute("trace", kernel(shaders::trace, defines), {.spec = spec})
-            .reads(scene_.bindings(graph, kSurfaceBuffers))
+            .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, buffers))
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
             .record([this](Commands& commands) {
@@ -148,7 +163,7 @@ struct PathTracer::Impl {
         const Image albedos = graph.image("first_hit.albedos", {options_.size, Format::RGBA32F});
         const FirstHitParameters parameters{frame_, options_.size};
         graph.compute("first hit", kernel(shaders::first_hit), {.spec = constants()})
-            .reads(scene_.bindings(graph, kSurfaceBuffers))
+            .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, {"uInstanceFirst"}))
             .overwrites({{"uIds", ids}, {"uNormal", normals}, {"uAlbedo", albedos}})
             .record([&](Commands& commands) {
@@ -180,6 +195,7 @@ struct PathTracer::Impl {
     bool orthographic_;
     bool unrolled_ = false;
     std::string generated_;
+    std::map<std::string, std::string> materialDefines_;
     DeviceImage state_;
     DeviceBuffer counters_;
     TraceParameters parameters_{};

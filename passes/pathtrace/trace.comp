@@ -13,6 +13,7 @@
 #define FILM_BINDING 1
 #include "passes/pathtrace/camera.glsl"
 #include "passes/pathtrace/path.glsl"
+#include "passes/pathtrace/see_through.glsl"
 #include "shaders/film/film.glsl"
 #include "shaders/film/filter.glsl"
 #include "shaders/intersection/scene_hit.glsl"
@@ -108,13 +109,14 @@ void main() {
     while (inside && path.sampleIndex < parameters.sampleEnd && spent < parameters.budget) {
         float distance;
         int slot;
-        const int closestTurns = closestHit(path.origin, path.direction, path.source, distance, slot);
+        const int closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
         bool cut;
         ShadowRay shadow;
         bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, parameters.environment.xyz, shadow, cut);
         bool blocked;
-        const int shadowTurns = occluded(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked);
-        path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance : vec3(0.0);
+        float passes;
+        const int shadowTurns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
+        path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
 
         shadowRays += shadow.limit > 0.0 ? 1u : 0u;
         bounceRays += alive ? 1u : 0u;
@@ -126,7 +128,7 @@ void main() {
             path = startPath(numbers, pixel, next);
             cameraRays += next < parameters.sampleEnd ? 1u : 0u;
         }
-        spent += 1u;
+        spent += 1u + LOOP_TURNS;
         if (COUNT_TURNS) {
             abandonedRays += (closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u) + (shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u);
             spent += uint(subgroupMax(closestTurns) + subgroupMax(shadowTurns));

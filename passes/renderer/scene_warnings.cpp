@@ -1,5 +1,7 @@
 #include "passes/renderer/scene_warnings.hpp"
 
+#include "passes/scene/material_layout.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +13,9 @@ namespace {
 
 /** The first set that a texture which is sampled names and the primitive lacks; -1 where there is none. */
 int missingSet(const Material& material, const Primitive& primitive) {
-    const bool emits = material.emission != glm::vec3(0.0f);
-    for (const TextureUse* use : {&material.baseColorTexture, emits ? &material.emissiveTexture : nullptr}) {
-        if (use && *use && std::size_t(use->texcoord) >= primitive.texcoords.size()) return use->texcoord;
+    for (const pack::SampledTexture& texture : pack::sampledTextures(material)) {
+        const int set = texture.use->texcoord;
+        if (std::size_t(set) >= primitive.texcoords.size()) return set;
     }
     return -1;
 }

@@ -38,6 +38,8 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
                   {"ENVIRONMENT_ROW_BITS", std::int32_t(info_.environmentBits[0])},
                   {"ENVIRONMENT_COLUMN_BITS", std::int32_t(info_.environmentBits[1])},
                   {"ENVIRONMENT_ROTATED", info_.environmentRotated},
+                  {"HAS_LINEAR_TEXTURES", info_.linearTextures},
+                  {"ALBEDO_TABLES", std::int32_t(info_.albedoTables)},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
     const auto upload = [&](std::string_view name, auto& values, Format view) {
         using T = typename std::decay_t<decltype(values)>::value_type;
@@ -51,6 +53,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uNodes", info_.nodes, Format::Undefined);
     upload("uNormals", info_.normals, Format::Undefined);
     upload("uTexcoords", info_.texcoords, Format::Undefined);
+    upload("uTangents", info_.tangents, Format::Undefined);
     upload("uColors", info_.colors, Format::Undefined);
     upload("uMaterials", info_.materials, Format::Undefined);
     upload("uLights", info_.lights, Format::Undefined);

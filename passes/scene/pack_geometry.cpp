@@ -1,9 +1,11 @@
+#include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,17 +21,16 @@ bool anyPrimitive(const Scene& scene, const std::vector<Instance>& instances, Co
     return false;
 }
 
-/** Whether a material has colour textures: those that kernels sample. */
-bool samplesTexture(const Scene& scene, const Primitive& primitive) {
-    if (primitive.material < 0) return false;
-    const Material& material = scene.materials[std::size_t(primitive.material)];
-    return material.baseColorTexture || material.emissiveTexture;
+/** The material of a primitive; glTF's default where it names none. */
+const Material& materialOf(const Scene& scene, const Primitive& primitive) {
+    static const Material standard;
+    return primitive.material < 0 ? standard : scene.materials[std::size_t(primitive.material)];
 }
 
-/** Texture coordinates of a vertex in a set; 0 where the primitive has no such set, or the use no texture. */
-glm::vec2 texcoord(const Primitive& primitive, const TextureUse* use, std::uint32_t vertex) {
-    if (!use || !*use || std::size_t(use->texcoord) >= primitive.texcoords.size()) return glm::vec2(0.0f);
-    return primitive.texcoords[std::size_t(use->texcoord)][vertex];
+/** Texture coordinates of a vertex in a set; 0 where the primitive has no such set. */
+glm::vec2 texcoord(const Primitive& primitive, int set, std::uint32_t vertex) {
+    if (set < 0 || std::size_t(set) >= primitive.texcoords.size()) return glm::vec2(0.0f);
+    return primitive.texcoords[std::size_t(set)][vertex];
 }
 
 /** Directions that are normal to a surface transform by the cofactor matrix: it is det(M) M^-T, and stays
@@ -73,8 +74,10 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
         anyPrimitive(scene, instances, [](const Primitive& p) { return !p.normals.empty(); });
     const bool anyColors =
         anyPrimitive(scene, instances, [](const Primitive& p) { return !p.colors.empty(); });
-    const bool anyTexcoords =
-        anyPrimitive(scene, instances, [&](const Primitive& p) { return samplesTexture(scene, p); });
+    const bool anyTexcoords = anyPrimitive(
+        scene, instances, [&](const Primitive& p) { return texcoordSets(materialOf(scene, p))[0] >= 0; });
+    const bool anyTangents = anyPrimitive(
+        scene, instances, [&](const Primitive& p) { return needsTangents(materialOf(scene, p)); });
 
     std::vector<glm::vec3> positions;
     positions.reserve(total * 3);
@@ -82,6 +85,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
     if (anyNormals) packed.normals.reserve(total * 3);
     if (anyColors) packed.colors.reserve(total * 3);
     if (anyTexcoords) packed.texcoords.reserve(total * 3);
+    if (anyTangents) packed.tangents.reserve(total * 3);
 
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const Instance& instance = instances[i];
@@ -94,10 +98,11 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
             const Primitive& primitive = mesh.primitives[p];
             const std::uint32_t material = primitive.material < 0 ? std::uint32_t(scene.materials.size())
                                                                   : std::uint32_t(primitive.material);
-            const Material* const named =
-                primitive.material < 0 ? nullptr : &scene.materials[std::size_t(primitive.material)];
-            const TextureUse* const baseColor = named ? &named->baseColorTexture : nullptr;
-            const TextureUse* const emissive = named ? &named->emissiveTexture : nullptr;
+            const Material& look = materialOf(scene, primitive);
+            const std::array<int, 2> sets = texcoordSets(look);
+            const bool hasTangents = anyTangents && needsTangents(look);
+            const std::vector<glm::vec4> cornerTangents =
+                hasTangents ? tangents(primitive, tangentSet(look)) : std::vector<glm::vec4>();
             for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
                 std::uint32_t index[3] = {primitive.indices[t], primitive.indices[t + 1],
                                           primitive.indices[t + 2]};
@@ -131,8 +136,18 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
                 }
                 if (anyTexcoords)
                     for (std::uint32_t k : index) {
-                        packed.texcoords.emplace_back(texcoord(primitive, baseColor, k),
-                                                      texcoord(primitive, emissive, k));
+                        packed.texcoords.emplace_back(texcoord(primitive, sets[0], k),
+                                                      texcoord(primitive, sets[1], k));
+                    }
+                if (anyTangents)
+                    for (std::size_t k : {std::size_t(0), mirrored ? std::size_t(2) : std::size_t(1),
+                                          mirrored ? std::size_t(1) : std::size_t(2)}) {
+                        const glm::vec4 local =
+                            hasTangents ? cornerTangents[t + k] : glm::vec4(1.0f, 0.0f, 0.0f, 1.0f);
+                        // Tangents lie in the surface: the transform itself carries them. A mirror turns the
+                        // bitangent over.
+                        packed.tangents.emplace_back(unitOr(linear * glm::dvec3(local), glm::dvec3(1, 0, 0)),
+                                                     mirrored ? -local.w : local.w);
                     }
                 if (anyColors)
                     for (std::uint32_t k : index)

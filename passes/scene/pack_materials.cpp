@@ -1,3 +1,5 @@
+#include "passes/scene/albedo_tables.hpp"
+#include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <heliograph/error.hpp>
@@ -28,19 +30,33 @@ constexpr std::uint32_t kWrapVShift = 2;
 constexpr std::uint32_t kNearest = 1u << 4;
 constexpr std::uint32_t kFloat = 1u << 5;
 constexpr std::uint32_t kMipmaps = 1u << 6;
+constexpr std::uint32_t kLinear = 1u << 7;
 
-/** Packs textures used as colour once each and gives their place. */
+// Flags of a packed material, as shaders/scene/materials.glsl reads them.
+constexpr std::uint32_t kDoubleSided = 1u << 0;
+constexpr std::uint32_t kMask = 1u << 1;
+constexpr std::uint32_t kBlend = 1u << 2;
+constexpr std::uint32_t kUnlit = 1u << 3;
+constexpr std::uint32_t kThin = 1u << 4;
+constexpr std::uint32_t kTurnedFacets = 1u << 5;
+constexpr std::uint32_t kBeckmann = 1u << 6;
+constexpr std::uint32_t kSchlick = 1u << 7;
+constexpr std::uint32_t kCompensated = 1u << 8;
+constexpr std::uint32_t kModelShift = 16;
+
+/** Packs textures once each for every way they are read, as colour or as data, and gives their place. */
 class TexturePacker {
 public:
     TexturePacker(const Scene& scene, PackedScene& packed) : scene_(scene), packed_(packed) {}
 
     /** Index into PackedScene::textures, or -1. */
-    int add(const TextureUse& use) {
+    int add(const TextureUse& use, bool color) {
         if (!use) return -1;
         if (use.texture >= int(scene_.textures.size()))
             throw InputError(scene_.name, "", fmt::format("texture {} does not exist", use.texture),
                              "name one of the scene's textures");
-        const auto [place, isNew] = packedTexture_.try_emplace(use.texture, int(packed_.textures.size()));
+        const auto [place, isNew] =
+            packedTexture_.try_emplace({use.texture, color}, int(packed_.textures.size()));
         if (!isNew) return place->second;
         const Texture& texture = scene_.textures[std::size_t(use.texture)];
         if (texture.image < 0 || texture.image >= int(scene_.images.size()))
@@ -49,19 +65,23 @@ public:
                              "name one of the scene's images");
         const TextureImage& image = scene_.images[std::size_t(texture.image)];
         const bool eightBits = std::holds_alternative<std::vector<std::uint8_t>>(image.texels);
+        const bool sixteenBits = std::holds_alternative<std::vector<std::uint16_t>>(image.texels);
         std::uint32_t flags = std::uint32_t(texture.wrapU) | std::uint32_t(texture.wrapV) << kWrapVShift;
         if (texture.magFilter == Filter::Nearest) flags |= kNearest;
         if (!eightBits) flags |= kFloat;
-        if (texture.useMipmaps) flags |= kMipmaps;
-        packed_.textures.emplace_back(addImage(texture.image), image.width, image.height, flags);
+        if (texture.useMipmaps && color) flags |= kMipmaps;
+        if (!color && eightBits) flags |= kLinear;
+        packed_.linearTextures |= !color && eightBits;
+        packed_.textures.emplace_back(addImage(texture.image, color || !sixteenBits), image.width,
+                                      image.height, flags);
         return place->second;
     }
 
 private:
     /** Offset of an image's first texel in its array. Images are stored once however many textures share
-     * them. */
-    std::uint32_t addImage(int index) {
-        const auto [place, isNew] = imageOffset_.try_emplace(index, 0u);
+     * them; 16-bit ones once for each way they are decoded. */
+    std::uint32_t addImage(int index, bool decode) {
+        const auto [place, isNew] = imageOffset_.try_emplace({index, decode}, 0u);
         if (!isNew) return place->second;
         const TextureImage& image = scene_.images[std::size_t(index)];
         const std::size_t texels = std::size_t(image.width) * image.height;
@@ -79,7 +99,8 @@ private:
             }
         } else {
             place->second = checkedOffset(packed_.texelsFloat.size(), texels, index);
-            for (std::size_t i = 0; i < texels; ++i) packed_.texelsFloat.push_back(linearTexel(image, i));
+            for (std::size_t i = 0; i < texels; ++i)
+                packed_.texelsFloat.push_back(linearTexel(image, i, decode));
         }
         return place->second;
     }
@@ -93,20 +114,21 @@ private:
         return std::uint32_t(offset);
     }
 
-    static glm::vec4 linearTexel(const TextureImage& image, std::size_t i) {
+    static glm::vec4 linearTexel(const TextureImage& image, std::size_t i, bool decode) {
         if (const auto* floats = std::get_if<std::vector<float>>(&image.texels)) {
             const float* c = floats->data() + i * 4;
             return {c[0], c[1], c[2], c[3]};
         }
         const std::uint16_t* c = std::get<std::vector<std::uint16_t>>(image.texels).data() + i * 4;
+        if (!decode) return glm::vec4(c[0], c[1], c[2], c[3]) / 65535.0f;
         return {float(srgbDecode(c[0] / 65535.0)), float(srgbDecode(c[1] / 65535.0)),
                 float(srgbDecode(c[2] / 65535.0)), float(c[3] / 65535.0)};
     }
 
     const Scene& scene_;
     PackedScene& packed_;
-    std::map<int, int> packedTexture_;
-    std::map<int, std::uint32_t> imageOffset_;
+    std::map<std::pair<int, bool>, int> packedTexture_;
+    std::map<std::pair<int, bool>, std::uint32_t> imageOffset_;
 };
 
 glm::vec4 transformRow(const TextureUse& use, int row, std::uint32_t bits) {
@@ -137,28 +159,95 @@ glm::dvec3 meanColor(const TextureImage& image) {
     return texels > 0 ? sum / double(texels) : sum;
 }
 
+namespace {
+
+using Rows = std::array<glm::vec4, kMaterialTexels>;
+
+/** Absorption over 1/m: what of light is left after the distance is the colour. No channel dies out wholly.
+ */
+glm::vec3 absorption(const Material& m) {
+    if (!(m.attenuationDistance < std::numeric_limits<float>::infinity())) return glm::vec3(0.0f);
+    return -glm::log(glm::max(m.attenuationColor, glm::vec3(1e-6f))) / m.attenuationDistance;
+}
+
+void addParameters(const Material& m, Rows& rows) {
+    rows[7] = {m.specularColor, m.specular};
+    rows[8] = {m.ior, m.transmission, m.dispersion, m.normalScale};
+    rows[9] = {absorption(m), 0.0f};
+    rows[10] = {m.clearcoat, m.clearcoatRoughness, m.clearcoatNormalScale, m.anisotropyStrength};
+    rows[11] = {m.sheenColor, m.sheenRoughness};
+    rows[12] = {std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation), m.iridescence,
+                m.iridescenceIor};
+    // Without a texture the film's thickness is the largest.
+    rows[13] = {m.iridescenceThicknessTexture ? m.iridescenceThicknessMinimum : m.iridescenceThicknessMaximum,
+                m.iridescenceThicknessMaximum, 0.0f, 0.0f};
+    if (m.scattering) {
+        const Scattering& s = *m.scattering;
+        rows[40] = {s.n, s.roughness};
+        rows[41] = {s.k, s.exponent};
+        rows[42] = {s.alpha, 0.0f, 0.0f};
+    }
+}
+
+std::uint32_t flagsOf(const Material& m) {
+    std::uint32_t flags = 0;
+    if (m.doubleSided) flags |= kDoubleSided;
+    if (m.alphaMode == AlphaMode::Mask) flags |= kMask;
+    if (m.alphaMode == AlphaMode::Blend) flags |= kBlend;
+    if (m.unlit) flags |= kUnlit;
+    if (m.thickness <= 0.0f) flags |= kThin;
+    if (m.scattering) {
+        const Scattering& s = *m.scattering;
+        flags |= (std::uint32_t(s.model) + 1u) << kModelShift;
+        if (s.alpha.x != s.alpha.y) flags |= kTurnedFacets;
+        if (s.beckmann) flags |= kBeckmann;
+        if (s.schlick) flags |= kSchlick;
+        if (s.multipleScattering) flags |= kCompensated;
+    } else if (m.anisotropyStrength > 0.0f) {
+        flags |= kTurnedFacets;
+    }
+    return flags;
+}
+
+}  // namespace
+
 void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed) {
     TexturePacker textures(scene, packed);
     for (std::size_t i = 0; i <= scene.materials.size(); ++i) {
         const Material material = i < scene.materials.size() ? scene.materials[i] : Material{};
-        const bool used = materialUsed[i];
-        const bool emits = material.emission != glm::vec3(0.0f);
-        const int baseTexture = used ? textures.add(material.baseColorTexture) : -1;
-        const int emissiveTexture = used && emits ? textures.add(material.emissiveTexture) : -1;
-        packed.emission |= used && emits;
-        packed.texturedEmission |= emissiveTexture >= 0;
-        packed.baseColorTextures |= baseTexture >= 0;
-        packed.doubleSidedEmission |= used && emits && material.doubleSided;
-        const std::uint32_t flags = material.doubleSided ? 1u : 0u;
-        packed.materials.push_back(material.baseColor);
-        packed.materials.push_back({material.emission, glm::uintBitsToFloat(flags)});
+        Rows rows{};
+        rows[0] = material.baseColor;
+        rows[1] = {material.emission, glm::uintBitsToFloat(flagsOf(material))};
         // The light sampling density of this material's surfaces, filled in by lights().
-        packed.materials.push_back({0.0f, material.metallic, material.roughness, material.alphaCutoff});
-        packed.materials.push_back(transformRow(material.baseColorTexture, 0, std::uint32_t(baseTexture)));
-        packed.materials.push_back(transformRow(material.baseColorTexture, 1, kBaseColorSlot));
-        packed.materials.push_back(transformRow(material.emissiveTexture, 0, std::uint32_t(emissiveTexture)));
-        packed.materials.push_back(transformRow(material.emissiveTexture, 1, kEmissiveSlot));
+        rows[2] = {0.0f, material.metallic, material.roughness, material.alphaCutoff};
+        addParameters(material, rows);
+        for (std::size_t row = 3; row < 40; row = row == 5 ? 14 : row + 2)
+            rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
+        if (materialUsed[i]) {
+            const std::uint32_t features = materialFeatures(material);
+            packed.materialFeatures |= features == 0 ? kGltfFeature : features;
+            const std::array<int, 2> sets = texcoordSets(material);
+            for (const SampledTexture& texture : sampledTextures(material)) {
+                const int index = textures.add(*texture.use, texture.color);
+                rows[texture.row] = transformRow(*texture.use, 0, std::uint32_t(index));
+                rows[texture.row + 1] = transformRow(*texture.use, 1, texcoordSlot(sets, *texture.use));
+            }
+            const bool emits = material.emission != glm::vec3(0.0f);
+            packed.emission |= emits;
+            packed.texturedEmission |= emits && material.emissiveTexture;
+            packed.baseColorTextures |= bool(material.baseColorTexture);
+            packed.doubleSidedEmission |= emits && material.doubleSided;
+        }
+        packed.materials.insert(packed.materials.end(), rows.begin(), rows.end());
     }
+    packed.albedoTables = std::uint32_t(packed.materials.size());
+    if ((packed.materialFeatures & (kSheenFeature | kMultipleFeature)) != 0) {
+        const std::vector<glm::vec4> tables = albedoTables((packed.materialFeatures & kSheenFeature) != 0,
+                                                           (packed.materialFeatures & kMultipleFeature) != 0);
+        packed.materials.insert(packed.materials.end(), tables.begin(), tables.end());
+    }
+    // Diffuse surfaces alone need none of the code that tells materials apart.
+    if (packed.materialFeatures == kGltfFeature) packed.materialFeatures = 0;
 }
 
 }  // namespace helio::pack

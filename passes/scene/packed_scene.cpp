@@ -1,6 +1,7 @@
 #include "passes/scene/packed_scene.hpp"
 
 #include "engine/scene/bvh.hpp"
+#include "passes/scene/material_layout.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -20,46 +21,61 @@ glm::vec4 withBits(const glm::vec3& v, std::uint32_t bits) {
     return {v, glm::uintBitsToFloat(bits)};
 }
 
+/** What the pictures lack for the materials in use: of all pipelines, and of those that take every surface
+ * for Lambertian. */
+struct NotShown {
+    std::set<std::pair<std::string, std::string>> anywhere, byLambert;
+};
+NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& materialUsed) {
+    NotShown result;
+    auto& named = result.anywhere;
+    auto& lambert = result.byLambert;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        if (!materialUsed[i]) continue;
+        const Material& m = scene.materials[i];
+        if (m.occlusionTexture) named.emplace("occlusion textures", "occlusion is computed, not read");
+        if (m.thicknessTexture) named.emplace("thickness textures", "thickness is that of the surfaces");
+        if (pack::namesTooManySets(m))
+            named.emplace("third texture coordinate sets", "a material's textures read two sets at most");
+        const auto skipIf = [&](bool isAsked, const char* what) {
+            if (isAsked) lambert.emplace(what, "surfaces scatter as Lambert with their base colour");
+        };
+        const std::uint32_t features = pack::materialFeatures(m);
+        const auto has = [&](std::uint32_t bits) { return (features & bits) != 0; };
+        using namespace pack;
+        skipIf(has(kSpecularFeature), "specular reflection");
+        skipIf(has(kMetallicTextureFeature | kSpecularTextureFeature),
+               "metallic, roughness and specular textures");
+        if (has(kNormalMapFeature)) lambert.emplace("normal maps", "vertex normals are used");
+        if (has(kAlphaFeature)) lambert.emplace("alpha masks and blending", "surfaces are opaque");
+        skipIf(m.unlit, "unlit materials");
+        skipIf(has(kTransmissionFeature), "transmission");
+        skipIf(m.thickness > 0.0f, "volumes");
+        skipIf(has(kDispersionFeature), "dispersion");
+        skipIf(has(kClearcoatFeature), "clearcoat");
+        skipIf(has(kSheenFeature), "sheen");
+        skipIf(has(kAnisotropyFeature), "anisotropy");
+        skipIf(has(kIridescenceFeature), "iridescence");
+        skipIf(m.scattering.has_value(), "scattering models");
+        for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
+    }
+    return result;
+}
+
 }  // namespace
 
 // A pass that learns to shade one of these takes its line out.
 std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& scene,
                                                                 const std::vector<bool>& materialUsed) {
-    std::set<std::pair<std::string, std::string>> named;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        if (!materialUsed[i]) continue;
-        const Material& m = scene.materials[i];
-        if (m.metallic > 0.0f || m.specular > 0.0f)
-            named.emplace("specular reflection", "surfaces scatter as Lambert with their base colour");
-        if (m.metallicRoughnessTexture || m.specularTexture || m.specularColorTexture)
-            named.emplace("metallic, roughness and specular textures",
-                          "surfaces scatter as Lambert with their base colour");
-        if (m.normalTexture) named.emplace("normal maps", "vertex normals are used");
-        if (m.alphaMode != AlphaMode::Opaque)
-            named.emplace("alpha masks and blending", "surfaces are opaque");
-        if (m.unlit) named.emplace("unlit materials", "surfaces scatter as Lambert with their base colour");
-        if (m.occlusionTexture) named.emplace("occlusion textures", "occlusion is computed, not read");
-        const auto skipIf = [&](bool isAsked, const char* what) {
-            if (isAsked) named.emplace(what, "surfaces scatter as Lambert with their base colour");
-        };
-        skipIf(m.transmission > 0.0f, "transmission");
-        skipIf(m.thickness > 0.0f, "volumes");
-        skipIf(m.dispersion > 0.0f, "dispersion");
-        skipIf(m.clearcoat > 0.0f, "clearcoat");
-        skipIf(m.sheenColor != glm::vec3(0.0f), "sheen");
-        skipIf(m.anisotropyStrength > 0.0f, "anisotropy");
-        skipIf(m.iridescence > 0.0f, "iridescence");
-        skipIf(m.scattering.has_value(), "scattering models");
-        for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
-    }
-    return {named.begin(), named.end()};
+    const NotShown result = materialsNotShown(scene, materialUsed);
+    return {result.anywhere.begin(), result.anywhere.end()};
 }
 
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
-           bytesOf(texcoords) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) + bytesOf(textures) +
-           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) +
-           bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
+           bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) +
+           bytesOf(textures) + bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) +
+           bytesOf(lightSlots) + bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
@@ -94,7 +110,9 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
         packed.triangles.push_back(withBits(positions[g * 3 + 1], surfaces[g].instance));
         packed.triangles.push_back(withBits(positions[g * 3 + 2], surfaces[g].material));
     }
-    packed.skipped = pack::notShown(scene, materialUsed);
+    const NotShown absent = materialsNotShown(scene, materialUsed);
+    packed.skipped.assign(absent.anywhere.begin(), absent.anywhere.end());
+    packed.lambertSkipped.assign(absent.byLambert.begin(), absent.byLambert.end());
     return packed;
 }
 

@@ -19,9 +19,7 @@
 namespace helio {
 
 /** Texels per material in PackedScene::materials; shaders/scene/materials.glsl names them. */
-inline constexpr std::uint32_t kMaterialTexels = 7;
-/** Which half of PackedScene::texcoords a material's texture reads: whatever set it names is packed there. */
-inline constexpr std::uint32_t kBaseColorSlot = 0, kEmissiveSlot = 1;
+inline constexpr std::uint32_t kMaterialTexels = 43;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
 
@@ -53,12 +51,17 @@ struct PackedScene {
     std::vector<glm::uvec4> nodes;
     /** 3 texels a g (one per vertex): unit world-space shading normal, 0. Empty where no mesh has normals. */
     std::vector<glm::vec4> normals;
-    /** 3 texels a g: u, v in the set that the material's base colour texture names, then in its emissive
-     * texture's; 0 where the primitive has no such set. Empty where no material in use samples a texture. */
+    /** 3 texels a g: u, v in the first set that the material's textures name, then in the second; 0 where the
+     * primitive has no such set. Empty where no material in use samples a texture. */
     std::vector<glm::vec4> texcoords;
+    /** 3 texels a g: unit world-space tangent, sign of the bitangent. Empty where no material needs them. */
+    std::vector<glm::vec4> tangents;
     /** 3 texels a g: linear colour. Empty where no mesh has colours. */
     std::vector<glm::vec4> colors;
-    std::vector<glm::vec4> materials;    ///< kMaterialTexels each; the last is glTF's default material
+    /** kMaterialTexels each; the last is glTF's default material. Then the tables of albedos, where needed.
+     */
+    std::vector<glm::vec4> materials;
+    std::uint32_t albedoTables = 0;      ///< first of their texels
     std::vector<glm::vec4> lights;       ///< kLightTexels each
     std::vector<glm::uvec4> textures;    ///< offset, width, height, flags
     std::vector<std::uint32_t> texels8;  ///< RGBA8 as stored in the file, R in the low byte
@@ -92,9 +95,13 @@ struct PackedScene {
     bool emission = false;          ///< some surface in use emits
     bool texturedEmission = false;  ///< emission varies over some surface in use
     bool baseColorTextures = false;
+    bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
+    std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
     bool doubleSidedEmission = false;
-    /** "WHAT", "WHY" of everything in the scene that kernels do not show (yet). */
+    /** "WHAT", "WHY" of everything in the scene that no kernel shows (yet). */
     std::vector<std::pair<std::string, std::string>> skipped;
+    /** What kernels that take every surface for Lambertian leave out besides. */
+    std::vector<std::pair<std::string, std::string>> lambertSkipped;
     std::vector<std::string> warnings;  ///< what of the scene is not shown as it is given
     double treeSeconds = 0;             ///< time to build the tree
 
@@ -130,6 +137,10 @@ void environment(const Scene& scene, PackedScene& packed);
  */
 std::vector<std::pair<std::string, std::string>> notShown(const Scene& scene,
                                                           const std::vector<bool>& materialUsed);
+
+/** Unit tangents of a primitive's corners in its own space, 3 a triangle, with the bitangent's sign: those it
+ * has, else by its texture coordinates (see pack_tangents.cpp). */
+std::vector<glm::vec4> tangents(const Primitive& primitive, int texcoordSet);
 
 /** Mean linear RGB of a texture used as colour. */
 glm::dvec3 meanColor(const TextureImage& image);

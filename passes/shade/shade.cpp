@@ -158,12 +158,11 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
                             "the raster pipeline's lights are unoccluded; the path pipeline has shadows");
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
-        result.emplace_back("gloss and metal", "the raster pipeline shades every surface as Lambertian");
     }
     if (scene_.hasEnvironmentImage())
         result.emplace_back("light of the environment's image",
                             "the raster pipeline shows it behind the scene only");
-    result.emplace_back("alpha", "the raster pipeline draws every surface as opaque");
+    for (const auto& skipped : info.lambertSkipped) result.push_back(skipped);
     if (info.texturedEmission && info.areaLights)
         result.emplace_back("texture of emission over a light",
                             "the raster pipeline takes its mean over each triangle");

@@ -2,7 +2,7 @@
 #define HELIOGRAPH_SCENE_FEATURES
 /** @file
  * What the scene has, as specialization constants (DeviceScene::constants): code behind a constant that is
- * false is not compiled. Identifiers 100 to 119 are kept for the scene.
+ * false is not compiled. Identifiers 100 to 119 and 130 to 139 (surface_material.glsl) are kept for the scene.
  */
 layout(constant_id = 100) const bool HAS_NORMALS = true;            ///< some vertex normals
 layout(constant_id = 101) const bool HAS_COLORS = true;             ///< some vertex colours
@@ -17,4 +17,5 @@ layout(constant_id = 109) const int LIGHT_COUNT = 0;                ///< rows of
 layout(constant_id = 117) const int LIGHT_BITS = 1;                 ///< of the table's alias slots
 layout(constant_id = 110) const int TRIANGLE_COUNT = 0;
 layout(constant_id = 111) const bool HAS_TRIANGLE_LIGHTS = true;    ///< else all area lights are parallelograms
+layout(constant_id = 118) const bool HAS_LINEAR_TEXTURES = false;   ///< some 8-bit texture holds data
 #endif

@@ -1,6 +1,7 @@
 #ifndef HELIOGRAPH_SCENE_MATERIALS
 #define HELIOGRAPH_SCENE_MATERIALS
-/** @file Materials: 7 texels each (kMaterialTexels). */
+/** @file Materials: 43 texels each (kMaterialTexels). Base colour and emission are read here, the rest, where the
+ * scene has more than diffuse surfaces, in shaders/scene/surface_material.glsl. */
 #include "shaders/scene/attributes.glsl"
 #include "shaders/scene/features.glsl"
 #include "shaders/scene/textures.glsl"
@@ -13,8 +14,17 @@
  * 5, 6: the same of the emissive texture
  */
 layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;
-const int MATERIAL_TEXELS = 7;
-const uint MATERIAL_DOUBLE_SIDED = 1u;
+const int MATERIAL_TEXELS = 43;
+const uint MATERIAL_DOUBLE_SIDED = 1u << 0;
+const uint MATERIAL_MASK = 1u << 1;           ///< opaque where alpha is at least the cutoff
+const uint MATERIAL_BLEND = 1u << 2;          ///< opaque with the chance alpha
+const uint MATERIAL_UNLIT = 1u << 3;          ///< shows its base colour, whatever the light
+const uint MATERIAL_THIN = 1u << 4;           ///< no volume behind the surface
+const uint MATERIAL_TURNED_FACETS = 1u << 5;  ///< widths along tangent and bitangent differ
+const uint MATERIAL_BECKMANN = 1u << 6;
+const uint MATERIAL_SCHLICK = 1u << 7;
+const uint MATERIAL_COMPENSATED = 1u << 8;    ///< light of several reflections between facets is added
+const uint MATERIAL_MODEL_SHIFT = 16u;        ///< Scattering::Model + 1; 0: glTF's
 
 /** Texel of a material's texture use at `row` (3 or 5): the texture's colour, white where there is none. */
 vec4 materialTexture(int material, int row, vec4 uv) {

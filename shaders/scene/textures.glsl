@@ -12,6 +12,7 @@ layout(set = 0, binding = 29) uniform samplerBuffer uTexelsFloat;   ///< linear
 
 const uint TEXTURE_NEAREST = 1u << 4;
 const uint TEXTURE_FLOAT = 1u << 5;
+const uint TEXTURE_LINEAR = 1u << 7;   ///< 8-bit texels hold data, which is not sRGB-encoded
 const uint TEXTURE_MIPMAPS = 1u << 6;  ///< the rasterizer filters it over mip levels
 
 /** x^2.4 for 0 <= x <= 1 by powers of square roots: 2.4 = 2 + 0.4, and x^0.4 = (x^2)^(1/5) by Newton's
@@ -52,6 +53,7 @@ vec4 fetchTexel(uvec4 header, int x, int y) {
     if (!HAS_FLOAT_TEXTURES || (header.w & TEXTURE_FLOAT) == 0u) {
         const vec4 encoded = unpackUnorm4x8(texelFetch(uTexels8, index).x);
         value = vec4(decodeSrgb(encoded.rgb), encoded.a);
+        if (HAS_LINEAR_TEXTURES && (header.w & TEXTURE_LINEAR) != 0u) value = encoded;
     }
     if (HAS_FLOAT_TEXTURES && (header.w & TEXTURE_FLOAT) != 0u) value = texelFetch(uTexelsFloat, index);
     return value;

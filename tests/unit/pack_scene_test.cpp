@@ -123,10 +123,10 @@ TEST(PackScene, AnyTwoTextureCoordinateSetsArePacked) {
     EXPECT_EQ(firstTexcoords(), glm::vec4(3, -3, 2, -2));
     // Packed, both textures read the half that holds their set.
     const PackedScene packed = packScene(scene);
-    EXPECT_EQ(bits(packed.materials[4].w), kBaseColorSlot);
-    EXPECT_EQ(bits(packed.materials[6].w), kEmissiveSlot);
+    EXPECT_EQ(bits(packed.materials[4].w), 0u);
+    EXPECT_EQ(bits(packed.materials[6].w), 1u);
     material.baseColorTexture.texcoord = 2;
-    EXPECT_EQ(firstTexcoords(), glm::vec4(2, -2, 2, -2));
+    EXPECT_EQ(firstTexcoords(), glm::vec4(2, -2, 0, 0));  // one set serves both
     material.baseColorTexture.texcoord = 4;  // not there
     EXPECT_EQ(firstTexcoords(), glm::vec4(0, 0, 2, -2));
     primitive.texcoords.clear();

@@ -1,0 +1,66 @@
+#ifndef HELIOGRAPH_PATHTRACE_LAMBERT_BSDF
+#define HELIOGRAPH_PATHTRACE_LAMBERT_BSDF
+/** @file How surfaces scatter where all are Lambertian: see material_bsdf.glsl for the general case. */
+#include "passes/pathtrace/surface.glsl"
+#include "shaders/sampling/sampler.glsl"
+#include "shaders/sampling/warp.glsl"
+
+/** Dimensions of the sampler that one scattering takes: point on a light, direction, (light, roulette). */
+const uint DIMENSIONS_PER_SCATTERING = 3u;
+/** Turns of loops that a scattering may take. */
+const uint LOOP_TURNS = 0u;
+
+struct SurfaceBsdf {
+    vec3 albedo;
+};
+
+/** Chance per solid angle of a sampled direction, and what of light from it is scattered, f |cos| over that chance. */
+struct SurfaceValue {
+    float density;
+    vec3 weight;
+};
+
+struct SurfaceSample {
+    vec3 direction;
+    vec3 weight;    ///< f |cos| / density
+    float density;  ///< negative: one of a finite set
+    bool goes;      ///< the path goes on
+};
+
+/** What is left of light after the segment that ends at s. */
+vec3 throughMedium(SurfacePoint s, vec3 direction, int source, float distance) {
+    return vec3(1.0);
+}
+/** Numbers that choose a lobe and a wavelength. */
+vec2 chooseLobe(uint kind, PixelSampler numbers, uint dimension) {
+    return vec2(0.0);
+}
+/** Where a ray leaves the surface. */
+vec3 leaving(SurfacePoint s, vec3 direction) {
+    return s.position + s.face * s.offset;
+}
+/** What the surface makes of a ray along `direction`; may pick a wavelength, which changes the throughput. */
+SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3 throughput) {
+    return SurfaceBsdf(baseColor(s.triangle.material, s.triangle.g, s.b).rgb);
+}
+bool scatters(SurfaceBsdf bsdf) {
+    return max(max(bsdf.albedo.x, bsdf.albedo.y), bsdf.albedo.z) > 0.0;
+}
+/** Light that a surface shows of itself beyond emission. */
+vec3 ownLight(SurfaceBsdf bsdf) {
+    return vec3(0.0);
+}
+SurfaceValue surfaceValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
+    const float cosine = dot(s.shading, wi);
+    return SurfaceValue(dot(s.face, wi) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
+}
+SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
+    SurfaceSample r;
+    float cosine;
+    r.direction = cosineDirection(s.shading, u, cosine);
+    r.density = cosine * INV_PI;
+    r.weight = bsdf.albedo;
+    r.goes = dot(s.face, r.direction) > 0.0;
+    return r;
+}
+#endif

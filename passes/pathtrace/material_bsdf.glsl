@@ -1,0 +1,185 @@
+#ifndef HELIOGRAPH_PATHTRACE_MATERIAL_BSDF
+#define HELIOGRAPH_PATHTRACE_MATERIAL_BSDF
+/** @file
+ * How surfaces of any material scatter, in the world's frame.
+ *
+ * A shading normal, of vertices or of a map, tilts a lobe so that part of it lies under the true surface. That part
+ * is mirrored at the surface, for light going out and coming in alike: no light is lost, whatever the normal, and a
+ * white surface stays white (dropping it would darken a lobe tilted by t to (1 + cos t)/2). A lobe that goes through
+ * is mirrored downwards likewise. Where the viewer is under the shading normal's horizon the normal is bent until
+ * it sees the viewer at LEAST_COSINE.
+ */
+#include "passes/pathtrace/surface.glsl"
+#include "shaders/sampling/sampler.glsl"
+#include "shaders/scene/surface_material.glsl"
+
+/** Those of lambert_bsdf.glsl, and one to choose a lobe and a wavelength. */
+const uint DIMENSIONS_PER_SCATTERING = 4u;
+/** Turns of loops that a scattering may take: Beckmann's slopes are found by iteration. */
+const uint LOOP_TURNS = HAS_MODELS ? 40u : 0u;
+const float LEAST_COSINE = 0.01;
+
+struct SurfaceBsdf {
+    mat3 frame;  ///< tangent, bitangent, normal, turned to the ray's side
+    vec3 wo;     ///< local
+    bool folds;  ///< the normal is not the surface's own
+    bool unlit;
+    vec3 albedo;  ///< of an unlit surface: what it shows
+    uint model;   ///< 0: glTF's
+    GltfSurface gltf;
+    ModelSurface other;
+};
+struct SurfaceValue {
+    float density;
+    vec3 weight;
+};
+struct SurfaceSample {
+    vec3 direction;
+    vec3 weight;
+    float density;
+    bool goes;
+};
+
+/** A unit normal bent towards the unit vector w until their cosine is LEAST_COSINE. */
+vec3 bentTowards(vec3 normal, vec3 w) {
+    const float cosine = dot(normal, w);
+    return cosine >= LEAST_COSINE ? normal : normalizeSafe(normal + w * (LEAST_COSINE * 1.001 - cosine), w);
+}
+
+/** A volume lies behind its surface's front face: the segment runs in one where it ends at a back face, or, for what
+ * lies within, where it left one inwards. */
+vec3 throughMedium(SurfacePoint s, vec3 direction, int source, float distance) {
+    vec3 left = vec3(1.0);
+    if (HAS_VOLUMES) {
+        vec3 absorption = s.front ? vec3(0.0) : materialRow(s.triangle.material, 9).rgb;
+        if (source >= 0) {
+            const Triangle t = fetchTriangle(source);
+            const bool inwards = dot(cross(t.v1 - t.v0, t.v2 - t.v0), direction) < 0.0;
+            const vec3 entered = materialRow(t.material, 9).rgb;
+            absorption = max(absorption, inwards ? entered : vec3(0.0));
+        }
+        left = vec3(realExp(max(-absorption.x * distance, -80.0)), realExp(max(-absorption.y * distance, -80.0)),
+                    realExp(max(-absorption.z * distance, -80.0)));
+    }
+    return left;
+}
+vec2 chooseLobe(uint kind, PixelSampler numbers, uint dimension) {
+    return sample2D(kind, numbers, dimension + 3u);
+}
+vec3 leaving(SurfacePoint s, vec3 direction) {
+    const bool through = HAS_LIGHT_THROUGH && dot(s.face, direction) < 0.0;
+    return s.position + s.face * (through ? -s.offset : s.offset);
+}
+
+SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3 throughput) {
+    const int material = s.triangle.material, g = s.triangle.g;
+    const vec3 wo = -direction;
+    const vec3 color = baseColor(material, g, s.b).rgb;
+    vec4 uv = vec4(0.0);
+    if ((MATERIAL_FEATURES & 0xff00u) != 0u) uv = texcoords(g, s.b);
+    SurfaceBsdf bsdf;
+    const uint flags = materialFlags(material);
+    bsdf.unlit = HAS_UNLIT && (flags & MATERIAL_UNLIT) != 0u;
+    bsdf.albedo = color;
+    bsdf.model = HAS_MODELS ? flags >> MATERIAL_MODEL_SHIFT : 0u;
+
+    const float side = s.front ? 1.0 : -1.0;
+    mat3 frame = tangentFrame(g, s.b, s.shading * side);
+    vec3 normal = s.shading;
+    if (HAS_NORMAL_MAPS) normal = side * (frame * mappedNormal(material, 16, uv, materialRow(material, 8).w));
+    normal = bentTowards(normal, wo);
+    bsdf.folds = HAS_NORMALS || HAS_NORMAL_MAPS;
+
+    if (HAS_GLTF) {
+        int channel = 1;
+        if (HAS_DISPERSION) {
+            // The first dispersing surface picks a wavelength, later ones find it in what is left of the others.
+            const bool disperses = materialRow(material, 8).z > 0.0 && (flags & MATERIAL_THIN) == 0u && bsdf.model == 0u;
+            const bvec3 lit = greaterThan(throughput, vec3(0.0));
+            const bool picked = (lit.x ? 1 : 0) + (lit.y ? 1 : 0) + (lit.z ? 1 : 0) <= 1;
+            channel = picked ? (lit.x ? 0 : (lit.y ? 1 : 2)) : min(int(choice * 3.0), 2);
+            if (disperses && !picked) throughput *= vec3(channel == 0, channel == 1, channel == 2) * 3.0;
+            if (!disperses) channel = 1;
+        }
+        bsdf.gltf = gltfSurface(material, color, uv, s.front, channel);
+        if (HAS_ANISOTROPY) turnFacets(material, uv, bsdf.gltf, frame);
+        bsdf.gltf.alpha = resolvedAlpha(bsdf.gltf.alpha);
+    }
+    if (HAS_MODELS) bsdf.other = modelSurface(material, flags, color, s.front);
+    // The tangent moves with the normal.
+    vec3 tangent = frame[0] - dot(frame[0], normal) * normal;
+    vec3 x, y;
+    orthonormalBasis(normal, x, y);
+    if (HAS_TANGENTS && dot(tangent, tangent) > 1e-8) {
+        x = normalize(tangent);
+        y = cross(normal, x);
+    }
+    bsdf.frame = mat3(x, y, normal);
+    bsdf.wo = wo * bsdf.frame;
+    bsdf.wo.z = max(bsdf.wo.z, 1e-6);
+    if (HAS_GLTF && HAS_CLEARCOAT) {
+        vec3 coat = s.shading;
+        if (HAS_CLEARCOAT_TEXTURES) {
+            const mat3 original = tangentFrame(g, s.b, s.shading * side);
+            coat = side * (original * mappedNormal(material, 28, uv, materialRow(material, 10).z));
+        }
+        bsdf.gltf.coatNormal = bentTowards(coat, wo) * bsdf.frame;
+    }
+    return bsdf;
+}
+
+bool scatters(SurfaceBsdf bsdf) {
+    return !bsdf.unlit;
+}
+vec3 ownLight(SurfaceBsdf bsdf) {
+    return HAS_UNLIT && bsdf.unlit ? bsdf.albedo : vec3(0.0);
+}
+
+ScatterValue localValue(SurfaceBsdf bsdf, vec3 wi) {
+    ScatterValue v = noScattering();
+    if (HAS_GLTF && bsdf.model == 0u) v = gltfValue(bsdf.gltf, bsdf.wo, wi);
+    if (HAS_MODELS && bsdf.model != 0u) v = modelValue(bsdf.other, bsdf.wo, wi);
+    return v;
+}
+
+/** What comes from one side of the true surface: of the lobe there, and of what is mirrored to it. */
+ScatterValue foldedValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
+    const float height = dot(s.face, wi);
+    const bool above = height > 0.0;
+    const vec3 local = wi * bsdf.frame;
+    ScatterValue sum = noScattering();
+    const bool lobe = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
+    if (lobe) sum = localValue(bsdf, local);
+    if (HAS_NORMALS || HAS_NORMAL_MAPS) {
+        const vec3 mirror = (wi - 2.0 * height * s.face) * bsdf.frame;
+        const bool folded = (mirror.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
+        if (folded) {
+            const ScatterValue v = localValue(bsdf, mirror);
+            sum = ScatterValue(sum.value + v.value, sum.density + v.density);
+        }
+    }
+    return sum;
+}
+
+SurfaceValue surfaceValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
+    const ScatterValue v = foldedValue(bsdf, s, wi);
+    return SurfaceValue(v.density, v.density > 0.0 ? v.value / v.density : vec3(0.0));
+}
+
+SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
+    ScatterSample chosen = noSample();
+    if (HAS_GLTF && bsdf.model == 0u) chosen = gltfSample(bsdf.gltf, bsdf.wo, vec3(u, choice));
+    if (HAS_MODELS && bsdf.model != 0u) chosen = modelSample(bsdf.other, bsdf.wo, vec3(u, choice));
+    SurfaceSample r;
+    r.direction = bsdf.frame * chosen.direction;
+    const float height = dot(s.face, r.direction);
+    if ((height > 0.0) != (chosen.direction.z > 0.0)) r.direction -= 2.0 * height * s.face;
+    r.direction = normalize(r.direction);
+    const SurfaceValue v = surfaceValue(bsdf, s, r.direction);
+    const bool isMirror = chosen.density < 0.0;
+    r.density = isMirror ? -1.0 : v.density;
+    r.weight = isMirror ? chosen.weight : v.weight;
+    r.goes = !bsdf.unlit && chosen.density != 0.0 && (isMirror || v.density > 0.0) && max(max(r.weight.x, r.weight.y), r.weight.z) > 0.0;
+    return r;
+}
+#endif
