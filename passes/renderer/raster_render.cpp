@@ -52,8 +52,10 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       sampleCount_(options.antialiasing.positions.size()),
       view_(std::make_shared<RasterView>(view)),
       raster_(device, {.cullBackFaces = options.cullBackFaces}),
-      shade_(device, scene.deviceScene) {
+      shadows_(options.shadows),
+      shade_(device, scene.deviceScene, scene.bounds, options.shadows) {
     makeMips(device);
+    makeShadows(device);
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
     if (!sampled || auxiliary_) makeCentrePlan(device);
     if (kind_ == Kind::Supersampling) makeSupersamplePlan(device);
@@ -63,7 +65,17 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
 bool RasterSession::fits(const RasterView& view, const RenderOptions& options) const {
     return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
            options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
-           view.orthographic == view_->orthographic;
+           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
+           options.shadows.filterRadius == shadows_.filterRadius &&
+           options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
+}
+
+void RasterSession::makeShadows(Device& device) {
+    if (!shade_.shadows().needed()) return;
+    Graph graph(device);
+    shade_.shadows().declare(graph, raster_, shade_.triangles(graph));
+    Plan plan = graph.compile();
+    plan.wait(plan.execute());
 }
 
 void RasterSession::makeCentrePlan(Device& device) {

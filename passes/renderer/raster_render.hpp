@@ -33,6 +33,7 @@ public:
 private:
     using Kind = Antialiasing::Kind;
     void makeMips(Device& device);
+    void makeShadows(Device& device);
     void makeCentrePlan(Device& device);
     void makeSupersamplePlan(Device& device);
     void makeMultisamplePlan(Device& device);
@@ -47,6 +48,7 @@ private:
     std::size_t sampleCount_;
     std::shared_ptr<RasterView> view_;
     RasterPipeline raster_;
+    Shadows shadows_;
     ShadePipeline shade_;
     /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;

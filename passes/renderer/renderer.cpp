@@ -46,6 +46,13 @@ void check(const RenderOptions& options) {
     refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
     refuse(!std::isfinite(options.frameTime), "frameTime", "is not finite", "give a time in seconds");
     checkAntialiasing(options.antialiasing);
+    const Shadows& shadows = options.shadows;
+    refuse(shadows.resolution != 0 && (shadows.resolution < 16 || shadows.resolution > 4096),
+           "shadows.resolution", fmt::format("{} texels", shadows.resolution), "give 16 to 4096, or 0");
+    refuse(!(shadows.filterRadius > 0 && shadows.filterRadius <= 16), "shadows.filterRadius",
+           fmt::format("{} texels", shadows.filterRadius), "give up to 16");
+    refuse(!(shadows.lightSize >= 0 && shadows.lightSize < 1e30f), "shadows.lightSize",
+           fmt::format("{}", shadows.lightSize), "give a size that is not negative");
     if (!options.environment) return;
     const Environment& environment = *options.environment;
     for (int c = 0; c < 3; ++c) {

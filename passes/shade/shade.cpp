@@ -14,11 +14,23 @@ namespace {
 /** Lights of one pass: some drivers end loops silently after 65,535 iterations. */
 constexpr std::uint32_t kLightsPerPass = 8192;
 
+/** Lights for which there may be maps: none where the table is too long to be kept on the host. */
+std::uint32_t shadowedLights(const PackedScene& scene) {
+    const bool kept = scene.lights.size() >= std::size_t(scene.lightCount) * kLightTexels;
+    return scene.punctualLights && kept ? scene.lightCount : 0;
+}
+
 }  // namespace
 
 ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene)
+    : ShadePipeline(device, scene, {}, {.kind = Shadows::Kind::None}) {}
+
+ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds,
+                             const Shadows& shadows)
     : scene_(scene),
       mips_(device, scene.info().textures),
+      shadowKind_(shadows.kind),
+      shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
       environment_(
           makeBuffer(device, "shade.environment", std::array{glm::vec4(scene.info().environment, 0.0f)})),
       maxStorageBufferRange_(device.info().maxStorageBufferRange) {}
@@ -71,6 +83,7 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     common.spec["FILTER_MIPS"] = mips_.needed();
     common.spec["SCENE_ORDER"] = sceneOrder;
     common.spec["ORTHOGRAPHIC"] = view.orthographic;
+    common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
     common.firstSpec = common.spec;
     common.firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
     common.firstSpec.merge(scene_.environmentConstants());
@@ -83,6 +96,7 @@ void ShadePipeline::bindScene(Graph& graph, Pass& pass, const Common& common) {
     pass.reads(scene_.bindings(graph, {"uTriangles", "uNormals", "uTexcoords", "uColors", "uMaterials",
                                        "uLights", "uTextures", "uTexels8", "uTexelsFloat", "uInstanceFirst"}))
         .reads(mips_.bindings(graph))
+        .reads(shadows_.bindings(graph))
         .reads({{"uSlots", common.slots, Format::R32UI}});
 }
 
@@ -154,8 +168,19 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
     const PackedScene& info = scene_.info();
     const bool lit = info.lightCount > 0 || info.environment != glm::vec3(0.0f);
     if (lit) {
-        result.emplace_back("shadows",
-                            "the raster pipeline's lights are unoccluded; the path pipeline has shadows");
+        const bool areas =
+            info.areaLights || scene_.hasEnvironmentImage() || info.environment != glm::vec3(0.0f);
+        const bool without =
+            info.punctualLights && (!shadows_.needed() || shadows_.layout().lightsWithout > 0);
+        if (areas)
+            result.emplace_back(
+                "shadows of surfaces and surroundings",
+                "the raster pipeline has shadows of punctual lights only; the path pipeline has all");
+        if (without)
+            result.emplace_back("shadows of punctual lights",
+                                shadowKind_ == Shadows::Kind::None
+                                    ? "--shadows none asked for that"
+                                    : "there is no room for maps of so many lights");
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }

@@ -5,13 +5,14 @@
  * viewer, and two-sided Lambert reflection of
  *  - emissive surfaces in the light table, by Lambert's formula for polygons cut at the horizon: the exact
  *    irradiance of what nothing covers,
- *  - point, spot and directional lights with glTF's falloff,
+ *  - point, spot and directional lights with glTF's falloff, shadowed by maps where asked (passes/shadow),
  *  - a constant environment over the whole hemisphere,
  * plus the surface's own emission (front face, or both where double-sided). What is left out is in skipped().
  */
 #include "passes/mip/mip_chain.hpp"
 #include "passes/raster/raster_pipeline.hpp"
 #include "passes/scene/device_scene.hpp"
+#include "passes/shadow/shadow_maps.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/graph.hpp>
@@ -41,12 +42,18 @@ struct MultisampleOutput {
 /** Shades one scene. Must outlive the plans it is declared in, as must the scene. */
 class ShadePipeline {
 public:
+    /** Without shadows. */
     ShadePipeline(Device& device, DeviceScene& scene);
+    /** `bounds` are the scene's. */
+    ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows);
 
     /** The levels that shading samples; run their passes once before (MipChains::needed, declareMips). */
     MipChains& mips() { return mips_; }
     /** Declares the passes that make the mip levels. */
     void declareMips(Graph& graph);
+
+    /** The maps that shading looks up; draw them once before (ShadowMaps::needed, ShadowMaps::declare). */
+    ShadowMaps& shadows() { return shadows_; }
 
     /** Declares rasterization of the scene and its shading. `view` as for RasterPipeline::declare. */
     ShadeOutput declare(Graph& graph, const RasterOutput& raster, std::shared_ptr<const RasterView> view);
@@ -69,6 +76,8 @@ private:
 
     DeviceScene& scene_;
     MipChains mips_;
+    Shadows::Kind shadowKind_;
+    ShadowMaps shadows_;
     DeviceBuffer environment_;
     std::uint64_t maxStorageBufferRange_;
 };

@@ -125,6 +125,12 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
+        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size"}) {
+            if (command.count(option) > 0) {
+                throw CLI::ValidationError(option,
+                                           "is there for --pipeline raster only: paths find shadows by rays");
+            }
+        }
         if (command.count("--aa") > 0) {
             throw CLI::ValidationError("--aa",
                                        "is there for --pipeline raster only; paths have --spp and --filter");
@@ -275,9 +281,9 @@ void addRenderCommand(CLI::App& app, Command& run) {
         ->add_option("-o,--output", arguments->outputs,
                      "Image to write, may be repeated: .exr linear with every channel, .png or .jpg sRGB")
         ->allow_extra_args(false);
-    addChoice<Pipeline>(
-        command, "--pipeline", options.pipeline, {{"path", Pipeline::Path}, {"raster", Pipeline::Raster}},
-        "path (default): unbiased path tracing; raster: z-buffer, direct light without shadows");
+    addChoice<Pipeline>(command, "--pipeline", options.pipeline,
+                        {{"path", Pipeline::Path}, {"raster", Pipeline::Raster}},
+                        "path (default): unbiased path tracing; raster: z-buffer, direct light, shadow maps");
     command->add_option("--size", arguments->size, "Pixels, WxH; the vertical field of view is kept")
         ->capture_default_str();
     command->add_option("--camera", options.camera, "Name or index of the camera; default the first");
@@ -331,6 +337,25 @@ void addRenderCommand(CLI::App& app, Command& run) {
         "--aa", arguments->antialiasing,
         "Antialiasing of the raster pipeline: none (default), fxaa, msaa2, msaa4, msaa8, msaa16, or "
         "each sample shaded: ssaaN, gridN, jitterN (N x N), randomN");
+    addChoice<Shadows::Kind>(
+        command, "--shadows", options.shadows.kind,
+        {{"none", Shadows::Kind::None},
+         {"hard", Shadows::Kind::Hard},
+         {"pcf", Shadows::Kind::Filtered},
+         {"pcss", Shadows::Kind::Soft},
+         {"variance", Shadows::Kind::Variance}},
+        "Shadow maps of the raster pipeline's punctual lights: none, hard, pcf (default), pcss "
+        "(of lights of --light-size), variance");
+    command
+        ->add_option("--shadow-resolution", options.shadows.resolution,
+                     "Texels of a shadow map each way; default 2048, 1024 for faces of a point light's cube")
+        ->check(CLI::Range(16u, 4096u));
+    command
+        ->add_option(
+            "--light-size", options.shadows.lightSize,
+            "Radius of punctual lights for pcss; of directional ones the tangent of their half angle")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command
         ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")

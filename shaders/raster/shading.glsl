@@ -1,8 +1,9 @@
-// First shading of a visibility buffer: base colour, two-sided Lambert under unoccluded lights, and emission.
+// First shading of a visibility buffer: base colour, two-sided Lambert under lights, and emission.
 #ifndef SHADERS_RASTER_SHADING_GLSL
 #define SHADERS_RASTER_SHADING_GLSL
 
 #include "shaders/raster/polygon_light.glsl"
+#include "shaders/raster/shadow.glsl"
 #include "shaders/raster/surface.glsl"
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
@@ -37,7 +38,9 @@ struct Shaded {
     vec3 albedo;
     vec3 normal;    // towards the viewer
     vec3 position;  // relative to the eye
+    vec3 faceNormal;
     float depth;
+    int g;
     int instance;
     int triangle;   // within the instance
 };
@@ -74,6 +77,8 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     vec3 normal = shadingNormal(g, surface.b, surface.faceNormal);
     shaded.normal = surface.front ? normal : -normal;
     shaded.albedo = base.rgb;
+    shaded.faceNormal = surface.faceNormal;
+    shaded.g = g;
     shaded.position = surface.position;
     shaded.depth = surface.depth;
     shaded.instance = source.instance;
@@ -130,8 +135,12 @@ vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
 vec3 reflectedLight(Shaded shaded) {
     vec3 irradiance = vec3(0.0);
     if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
-        for (uint light = push.first; light < push.first + push.count; ++light)
-            irradiance += lightIrradiance(int(light), shaded.position, shaded.normal);
+        for (uint light = push.first; light < push.first + push.count; ++light) {
+            vec3 arriving = lightIrradiance(int(light), shaded.position, shaded.normal);
+            if (SHADOWS != SHADOWS_NONE)
+                arriving *= lightVisibility(int(light), shaded.position, shaded.faceNormal, shaded.g);
+            irradiance += arriving;
+        }
     return shaded.albedo * (INV_PI * irradiance);
 }
 

@@ -56,6 +56,21 @@ struct Antialiasing {
  * randomN. The seed is that of jitterN and randomN. Throws InputError. */
 Antialiasing antialiasing(std::string_view name, std::uint32_t seed = 0);
 
+/** Shadow maps of the raster pipeline's punctual lights. */
+struct Shadows {
+    enum class Kind : std::uint8_t {
+        None,
+        Hard,      ///< one texel decides
+        Filtered,  ///< percentage-closer filtering over a box of 2 filterRadius texels
+        Soft,      ///< percentage-closer soft shadows: penumbras of a light of lightSize
+        Variance   ///< Chebyshev's bound from mean and variance over the box
+    };
+    Kind kind = Kind::Filtered;
+    std::uint32_t resolution = 0;  ///< texels of a map each way; 0: 2048, and 1024 for a cube's faces
+    float filterRadius = 1.0f;     ///< texels, up to 16
+    float lightSize = 0.05f;  ///< radius in scene units; of a directional light the tangent of its half angle
+};
+
 struct RenderOptions {
     std::array<std::uint32_t, 2> size = {1280, 720};  ///< pixels
     Pipeline pipeline = Pipeline::Path;
@@ -74,6 +89,7 @@ struct RenderOptions {
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
     Antialiasing antialiasing;  ///< of the raster pipeline
+    Shadows shadows;            ///< of the raster pipeline
     bool auxiliary = true;      ///< also albedo, normal, depth, variance, samples, ids
     /** Called between dispatches; return false to cancel: what is done is returned, `cancelled` set. */
     std::function<bool(const Progress&)> progress;
