@@ -174,7 +174,7 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
             info.punctualLights && (!shadows_.needed() || shadows_.layout().lightsWithout > 0);
         if (areas)
             result.emplace_back(
-                "shadows of surfaces and surroundings",
+                "shadows",
                 "the raster pipeline has shadows of punctual lights only; the path pipeline has all");
         if (without)
             result.emplace_back("shadows of punctual lights",
