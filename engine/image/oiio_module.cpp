@@ -1,5 +1,6 @@
 /** @file libheliograph_image.so: the one place that sees OpenImageIO. */
 #include "engine/image/backend.hpp"
+#include "engine/image/webp.hpp"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -129,6 +130,7 @@ public:
 
     std::string decode(std::span<const std::byte> file, const std::string& format,
                        DecodedImage& image) const override try {
+        if (format == "webp") return decodeWebp(file, maximumTexels, image);
         OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::create(format);

@@ -90,8 +90,9 @@ Check number(double low, double high) {
 Check positive() {
     return [](const Context& context, const Place& place, const json& value) {
         if (!value.is_number()) refuse(context, place, "is " + shown(value), "give a number");
-        if (!(float(value.get<double>()) > 0))
-            refuse(context, place, "is " + shown(value), "give a number above 0");
+        const auto x = float(value.get<double>());
+        if (!(x > 0) || std::isinf(x))
+            refuse(context, place, "is " + shown(value), "give a number above 0 that single precision holds");
     };
 }
 
