@@ -1,3 +1,4 @@
+#include "engine/scene/degenerate.hpp"
 #include "engine/scene/gltf/gltf.hpp"
 #include "engine/scene/load_monitor.hpp"
 #include "engine/scene/mesh/mesh.hpp"
@@ -23,6 +24,16 @@ Scene loadMeshFile(MeshImporter importer, const std::string& file, const LoadOpt
     throw InputError(file, "", "does not fit in memory", "give a smaller file");
 }
 
+Scene loadFile(const std::string& file, const LoadOptions& options, LoadMonitor& monitor) {
+    const std::string extension = lowerCaseExtension(file);
+    if (extension == ".gltf" || extension == ".glb") return loadGltf(file, options, monitor);
+    if (extension == ".obj") return loadMeshFile(loadObj, file, options, monitor);
+    if (extension == ".ply") return loadMeshFile(loadPly, file, options, monitor);
+    if (extension == ".stl") return loadMeshFile(loadStl, file, options, monitor);
+    throw InputError(file, "", "is no scene that can be read",
+                     "give a .gltf, .glb, .obj, .ply or .stl file, or sample:NAME");
+}
+
 }  // namespace
 
 Scene load(const std::string& source, const LoadOptions& options) {
@@ -34,13 +45,9 @@ Scene load(const std::string& source, const LoadOptions& options) {
     }
     LoadMonitor monitor(options);
     monitor.report("file", 0);
-    const std::string extension = lowerCaseExtension(source);
-    if (extension == ".gltf" || extension == ".glb") return loadGltf(source, options, monitor);
-    if (extension == ".obj") return loadMeshFile(loadObj, source, options, monitor);
-    if (extension == ".ply") return loadMeshFile(loadPly, source, options, monitor);
-    if (extension == ".stl") return loadMeshFile(loadStl, source, options, monitor);
-    throw InputError(source, "", "is no scene that can be read",
-                     "give a .gltf, .glb, .obj, .ply or .stl file, or sample:NAME");
+    Scene scene = loadFile(source, options, monitor);
+    warnOfDegenerates(scene);
+    return scene;
 }
 
 }  // namespace helio

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace helio::gltf {
 namespace {
@@ -110,15 +111,28 @@ Asset::Asset(Container container) : container_(std::move(container)), model_(par
     bytes_ = container_.size;
     const auto found = container_.document.find("buffers");
     if (found == container_.document.end()) return;
+    std::map<std::string, std::span<const std::byte>> loaded;  // buffers of one URI are one
     for (std::size_t i = 0; i < found->size(); ++i) {
-        const json& buffer = (*found)[i];
+        json& buffer = (*found)[i];
         const auto length = buffer["byteLength"].get<std::size_t>();
         const std::string place = fmt::format("buffers[{}]", i);
-        std::vector<std::byte> bytes;
+        std::span<const std::byte> bytes;
         if (buffer.contains("uri")) {
-            bytes = readUri(file(), place + ".uri", folder(), buffer["uri"].get_ref<const std::string&>());
+            std::string& uri = buffer["uri"].get_ref<std::string&>();
+            const auto known = loaded.find(uri);
+            if (known != loaded.end()) {
+                bytes = known->second;
+            } else {
+                bytes = owned_.emplace_back(readUri(file(), place + ".uri", folder(), uri));
+                bytes_ += bytes.size();
+                if (uri.starts_with("data:")) {
+                    uri = std::string();  // a third more than its bytes, which are there now
+                } else {
+                    loaded.emplace(uri, bytes);
+                }
+            }
         } else if (i == 0 && container_.hasBinaryChunk) {
-            bytes.assign(container_.binaryChunk.begin(), container_.binaryChunk.end());
+            bytes = container_.binaryChunk;
         } else {
             throw InputError(file(), place, "has neither a uri nor a GLB's binary chunk", "give it a uri");
         }
@@ -127,12 +141,21 @@ Asset::Asset(Container container) : container_(std::move(container)), model_(par
                              fmt::format("is {}, its data has {} bytes", length, bytes.size()),
                              "write the buffer again; it may be cut off");
         }
-        bytes.resize(length);
-        bytes_ += bytes.size();
-        buffers_.push_back(std::move(bytes));
+        buffers_.push_back(bytes.first(length));
     }
-    container_.bytes = {};
-    container_.binaryChunk = {};
+}
+
+std::vector<std::string> Asset::misaligned() const {
+    std::vector<std::string> places;
+    for (std::size_t i = 0; i < model_.accessors.size(); ++i) {
+        const tinygltf::Accessor& accessor = model_.accessors[i];
+        if (accessor.bufferView < 0) continue;
+        const tinygltf::BufferView& view = model_.bufferViews[std::size_t(accessor.bufferView)];
+        const std::size_t size = sizeOfComponent(accessor.componentType);
+        if (accessor.byteOffset % size != 0 || view.byteOffset % size != 0 || view.byteStride % size != 0)
+            places.push_back(fmt::format("accessors[{}]", i));
+    }
+    return places;
 }
 
 std::filesystem::path Asset::folder() const {
@@ -141,7 +164,7 @@ std::filesystem::path Asset::folder() const {
 
 std::span<const std::byte> Asset::bufferView(int index) const {
     const tinygltf::BufferView& view = model_.bufferViews[std::size_t(index)];
-    const std::span<const std::byte> buffer(buffers_[std::size_t(view.buffer)]);
+    const std::span<const std::byte> buffer = buffers_[std::size_t(view.buffer)];
     if (view.byteOffset + view.byteLength > buffer.size()) {
         throw InputError(file(), fmt::format("bufferViews[{}]", index),
                          fmt::format("ends at byte {}, its buffer at {}", view.byteOffset + view.byteLength,
@@ -212,6 +235,10 @@ Asset::Layout Asset::layout(int index) const {
     return layout;
 }
 
+bool Asset::isPacked(const Layout& layout) {
+    return !layout.base.empty() && layout.stride == layout.size && !layout.accessor.sparse.isSparse;
+}
+
 void Asset::check(int accessor) const {
     layout(accessor);
 }
@@ -242,29 +269,47 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
     }
 }
 
-std::vector<float> Asset::floats(int index, int components, const std::string& place) const {
-    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
+void Asset::checkType(int index, int components, const std::string& place) const {
     const int type = components == 1    ? TINYGLTF_TYPE_SCALAR
                      : components == 16 ? TINYGLTF_TYPE_MAT4
                                         : components;  // VEC2 to VEC4 are named by their numbers
-    if (accessor.type != type) {
-        throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
-                         "give an accessor of " + (components == 1    ? std::string("SCALAR")
-                                                   : components == 16 ? std::string("MAT4")
-                                                                      : fmt::format("VEC{}", components)));
-    }
+    if (model_.accessors[std::size_t(index)].type == type) return;
+    throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
+                     "give an accessor of " + (components == 1    ? std::string("SCALAR")
+                                               : components == 16 ? std::string("MAT4")
+                                                                  : fmt::format("VEC{}", components)));
+}
+
+std::vector<float> Asset::floats(int index, int components, const std::string& place) const {
+    checkType(index, components, place);
+    layout(index);  // checked before memory is taken for what the count says
+    std::vector<float> values(count(index) * std::size_t(components));
+    floats(index, components, place, values);
+    return values;
+}
+
+void Asset::floats(int index, int components, const std::string& place, std::span<float> values) const {
+    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
+    checkType(index, components, place);
     const double one = accessor.normalized ? normalizedOne(accessor.componentType) : 0;
-    const Layout from = layout(index);  // checked before memory is taken for what the count says
-    std::vector<float> values(accessor.count * std::size_t(components));
+    const Layout from = layout(index);
+    const auto refuse = [&](std::size_t element) {
+        throw InputError(file(), place,
+                         fmt::format("element {} of accessor {} is not finite", element, index),
+                         "give finite numbers");
+    };
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT && isPacked(from)) {
+        std::memcpy(values.data(), from.base.data(), values.size_bytes());
+        const auto wrong =
+            std::find_if_not(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+        if (wrong != values.end()) refuse(std::size_t(wrong - values.begin()) / std::size_t(components));
+        return;
+    }
+    std::fill(values.begin(), values.end(), 0.0f);
     read(index, from, [&](std::size_t element, std::size_t c, double value) {
-        if (!std::isfinite(value)) {
-            throw InputError(file(), place,
-                             fmt::format("element {} of accessor {} is not finite", element, index),
-                             "give finite numbers");
-        }
+        if (!std::isfinite(value)) refuse(element);
         values[element * std::size_t(components) + c] = float(one > 0 ? std::max(value / one, -1.0) : value);
     });
-    return values;
 }
 
 void Asset::checkIndices(int index, const std::string& place) const {
@@ -284,6 +329,10 @@ std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) c
     const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
     const Layout from = layout(index);
     std::vector<std::uint32_t> values(accessor.count);
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT && isPacked(from)) {
+        std::memcpy(values.data(), from.base.data(), values.size() * sizeof(std::uint32_t));
+        return values;
+    }
     read(index, from,
          [&](std::size_t element, std::size_t, double value) { values[element] = std::uint32_t(value); });
     return values;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <list>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ class Asset {
 public:
     /** Takes a container whose schema is checked. Loads the buffers. Throws InputError. */
     explicit Asset(Container container);
+    Asset(const Asset&) = delete;  // its buffers lie in it
+    Asset& operator=(const Asset&) = delete;
 
     const std::string& file() const { return container_.file; }
     const nlohmann::json& document() const { return container_.document; }
@@ -30,8 +33,12 @@ public:
      * integers as they are, or scaled to 0..1 or -1..1 where normalized. Every number is finite. `place` and
      * the types' names are for messages. */
     std::vector<float> floats(int accessor, int components, const std::string& place) const;
+    /** The same, into memory for as many. */
+    void floats(int accessor, int components, const std::string& place, std::span<float> values) const;
     /** An accessor of unsigned integers. */
     std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;
+    /** Places of accessors whose components do not lie at multiples of their size, as glTF wants it. */
+    std::vector<std::string> misaligned() const;
     /** Bytes of the file and of its buffers: what it may unfold to is in proportion. */
     std::size_t bytes() const { return bytes_; }
     /** Refuses an accessor whose elements do not all lie in its buffers: its count may then be trusted. */
@@ -44,12 +51,16 @@ private:
     struct Layout;
     /** Where an accessor's elements lie, all within their buffers. */
     Layout layout(int accessor) const;
+    void checkType(int accessor, int components, const std::string& place) const;
+    /** Whether the elements lie as they are wanted, one after the other. */
+    static bool isPacked(const Layout& layout);
     template <class Store>
     void read(int accessor, const Layout& layout, Store&& store) const;
 
     Container container_;
     tinygltf::Model model_;
-    std::vector<std::vector<std::byte>> buffers_;
+    std::list<std::vector<std::byte>> owned_;          ///< of buffers that are not in the file
+    std::vector<std::span<const std::byte>> buffers_;  ///< into owned_ or the file
     std::size_t bytes_ = 0;
 };
 

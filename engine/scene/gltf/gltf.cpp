@@ -6,6 +6,8 @@
 
 #include <heliograph/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <new>
@@ -55,6 +57,24 @@ void checkExtensions(const Container& container, helio::Scene& scene) {
     }
 }
 
+/** A material or node takes kilobytes, and a file could have one every three bytes: "{},". What such files
+ * would take is refused before it is taken. */
+void checkProportion(const Container& container) {
+    // Bytes that an element takes at most, in tinygltf's model, the document and the scene.
+    constexpr std::size_t material = 4500, other = 1200;
+    constexpr std::size_t most = std::size_t(160) << 20, perByte = 24;
+    std::size_t bytes = 0;
+    for (const auto& [member, elements] : container.document.items()) {
+        if (elements.is_array()) bytes += elements.size() * (member == "materials" ? material : other);
+        if (bytes > most + container.size * perByte) {
+            throw InputError(container.file, member,
+                             fmt::format("has {} elements, out of proportion to the file's {} bytes",
+                                         elements.size(), container.size),
+                             "leave out elements that say nothing");
+        }
+    }
+}
+
 /** Materials that some instance shows, under any variant if all are wanted. */
 std::set<int> usedMaterials(const helio::Scene& scene, bool everyVariant) {
     std::set<int> used;
@@ -76,10 +96,13 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     scene.name = file;
     gltf::Container container = gltf::readContainer(file);
     gltf::checkSchema(file, container.document);
+    gltf::checkProportion(container);
     gltf::checkExtensions(container, scene);
     extras::check(file, container.document);
     monitor.report("buffers", 0);
     const gltf::Asset asset(std::move(container));
+    for (const std::string& place : asset.misaligned())
+        warn(scene, place + " is not aligned to its components, as glTF asks for");
     gltf::MemoryBudget memory(asset);
     gltf::buildMeshes(asset, memory, monitor, scene);
     gltf::buildNodes(asset, memory, scene);

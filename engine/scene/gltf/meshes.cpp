@@ -120,12 +120,18 @@ private:
         asset_.check(accessor);
         const std::size_t count = kept_.empty() ? size_ : kept_.size();
         constexpr auto length = std::size_t(Vector::length());
+        static_assert(sizeof(Vector) == Vector::length() * sizeof(float));
+        if (kept_.empty()) {
+            memory_.take(place, count * sizeof(Vector), 0);
+            std::vector<Vector> result(count);
+            asset_.floats(accessor, int(length), place, {&result[0][0], count * length});
+            return result;
+        }
         memory_.take(place, count * sizeof(Vector), size_ * length * sizeof(float));
         const std::vector<float> values = asset_.floats(accessor, int(length), place);
         std::vector<Vector> result(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t vertex = kept_.empty() ? i : kept_[i];
-            for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[vertex * length + c];
+            for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[kept_[i] * length + c];
         }
         return result;
     }

@@ -77,13 +77,16 @@ glm::mat4 matrixOf(const Asset& asset, const std::vector<double>& values, std::s
     return matrix;
 }
 
-glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std::size_t node) {
+glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std::size_t node,
+                     helio::Scene& scene) {
     const glm::dquat q(values[3], values[0], values[1], values[2]);
     const double length = glm::length(q);
     if (!(length > 1e-6)) {
         throw InputError(asset.file(), fmt::format("nodes[{}].rotation", node), "is no unit quaternion",
                          "give x, y, z, w of length 1");
     }
+    if (std::abs(length - 1) > 0.01)
+        warn(scene, fmt::format("nodes[{}].rotation is a quaternion of length {:.3g}, not 1", node, length));
     return glm::quat(q / length);
 }
 
@@ -135,7 +138,7 @@ Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, M
     node.children = from.children;
     if (from.matrix.size() == 16) node.matrix = matrixOf(asset, from.matrix, index);
     if (from.translation.size() == 3) node.translation = vectorOf(from.translation);
-    if (from.rotation.size() == 4) node.rotation = rotationOf(asset, from.rotation, index);
+    if (from.rotation.size() == 4) node.rotation = rotationOf(asset, from.rotation, index, scene);
     if (from.scale.size() == 3) node.scale = vectorOf(from.scale);
     node.mesh = from.mesh;
     if (node.mesh >= 0 && !scene.meshes[std::size_t(node.mesh)].primitives.empty()) {

@@ -1,0 +1,61 @@
+#include "engine/scene/degenerate.hpp"
+
+#include "engine/scene/notes.hpp"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <functional>
+
+namespace helio {
+namespace {
+
+/** What a unit cube may become: below, single precision loses even the sides. */
+constexpr double smallestVolume = 1e-90;
+
+bool hasArea(const Primitive& primitive, std::size_t triangle) {
+    const std::uint32_t* const corner = &primitive.indices[triangle * 3];
+    const glm::dvec3 a = primitive.positions[corner[0]];
+    const glm::dvec3 area = glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a,
+                                       glm::dvec3(primitive.positions[corner[2]]) - a);
+    return area != glm::dvec3(0);
+}
+
+std::size_t trianglesWithoutArea(const Primitive& primitive) {
+    using Range = tbb::blocked_range<std::size_t>;
+    return tbb::parallel_reduce(
+        Range(0, primitive.indices.size() / 3, 16384), std::size_t(0),
+        [&](const Range& range, std::size_t count) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t) count += hasArea(primitive, t) ? 0 : 1;
+            return count;
+        },
+        std::plus<>());
+}
+
+}  // namespace
+
+void warnOfDegenerates(Scene& scene) {
+    std::size_t count = 0;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) count += trianglesWithoutArea(primitive);
+    }
+    if (count > 0)
+        warn(scene,
+             fmt::format("{} triangle{} no area and cannot be seen", count, count == 1 ? " has" : "s have"));
+    std::size_t flat = 0;
+    int first = -1;
+    for (const Instance& instance : scene.instances()) {
+        if (std::abs(glm::determinant(glm::dmat3(instance.transform))) > smallestVolume) continue;
+        if (flat++ == 0) first = instance.node;
+    }
+    if (flat > 0) {
+        warn(scene,
+             fmt::format("{} instance{} (the first is node {}) by a transform without inverse: flat, or "
+                         "not to be seen",
+                         flat, flat == 1 ? " is placed" : "s are placed", first));
+    }
+}
+
+}  // namespace helio

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Opens every malformed file with the program. Each must end in exit 1 with one line that names the file, the
+fault and the remedy, or load: then both pipelines must render it with finite pixels and say in a warning, or in
+what was left out, that something is wrong. Memory stays within twice the file and 256 MiB beyond what the
+program takes for a good file; 20 s is a hang.
+  tests/hostile/run.py BUILD [--keep FOLDER] [--only PART] [--list]
+"""
+import argparse
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import good_files
+import malformed
+
+ALLOWANCE = 256 << 20
+TIMEOUT = 20
+
+parser = argparse.ArgumentParser()
+parser.add_argument("build")
+parser.add_argument("--keep", help="leave the files in this folder")
+parser.add_argument("--only", default="", help="cases whose name has this in it")
+parser.add_argument("--list", action="store_true", help="print what becomes of each case")
+arguments = parser.parse_args()
+program = str(pathlib.Path(arguments.build).resolve() / "samples/heliograph/heliograph")
+
+Ended = collections.namedtuple("Ended", "code out err memory")
+
+
+def run(folder, *command):
+    """Runs the program in a folder. The memory is the peak of its resident set."""
+    out, err = folder / "out.txt", folder / "err.txt"
+    with open(out, "wb") as out_file, open(err, "wb") as err_file:
+        child = subprocess.Popen([program, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=out_file,
+                                 stderr=err_file, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT, TIMEOUT)))
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+    return Ended(child.returncode, out.read_text(errors="replace"), err.read_text(errors="replace"),
+                 usage.ru_maxrss * 1024)
+
+
+def faults_of_refusal(ended, file):
+    lines = ended.err.splitlines()
+    if len(lines) != 1:
+        return ["%d lines on standard error: %s" % (len(lines), ended.err[:300])]
+    start = "heliograph: error: "
+    if not lines[0].startswith(start):
+        return ["no error line: " + lines[0][:300]]
+    rest = lines[0][len(start):]
+    # A file that the scene's file names, an MTL file, may be the one at fault.
+    name, _, rest = rest.partition(": ")
+    faults = []
+    if name not in (file, "scene.mtl"):
+        faults.append("names no file: " + lines[0][:300])
+    if "; " not in rest:
+        faults.append("names no remedy: " + lines[0][:300])
+    return faults
+
+
+def remarks(render):
+    """What a render says of its scene."""
+    return [line for line in (render.err + render.out).splitlines() if "warning: " in line or line.startswith("left out ")]
+
+
+def check(case):
+    """(name, 'refused' or 'rendered', the line, faults)."""
+    name, files = case
+    folder = work / name
+    folder.mkdir(parents=True)
+    for file, content in files.items():
+        (folder / file).write_bytes(content)
+    file = next(iter(files))
+    size = sum(len(content) for content in files.values())
+    limit = base_memory + 2 * size + ALLOWANCE
+    info = run(folder, "info", file)
+    faults = []
+    if info.memory > limit:
+        faults.append("info takes %d MiB for %d bytes" % (info.memory >> 20, size))
+    if info.code == 1:
+        return name, "refused", info.err.strip(), faults + faults_of_refusal(info, file)
+    if info.code != 0:
+        return name, "failed", info.err.strip(), faults + ["exit %d: %s" % (info.code, info.err[-300:])]
+    said, refusal = [], None
+    for pipeline in ("path", "raster"):
+        render = run(folder, "render", file, "--size", "8x8", "--spp", "1", "--pipeline", pipeline, "-o", pipeline + ".exr",
+                     "--stats", pipeline + ".json")
+        if render.code == 1:  # found where the scene is prepared
+            refusal = render.err.strip().splitlines()[-1]
+            faults += faults_of_refusal(render._replace(err=refusal + "\n"), file)
+            continue
+        if render.code != 0:
+            return name, "failed", render.err.strip(), faults + ["%s: exit %d: %s" % (pipeline, render.code, render.err[-300:])]
+        statistics = json.loads((folder / (pipeline + ".json")).read_text())
+        if statistics["nan_count"] != 0:
+            faults.append("%s: %d samples are not finite" % (pipeline, statistics["nan_count"]))
+        said += [line for line in remarks(render) if line not in usual[pathlib.Path(file).suffix]]
+    if refusal is not None:
+        return name, "refused", refusal, faults
+    if not said:
+        faults.append("renders without a word of what is wrong")
+    compare = run(folder, "compare", "path.exr", "raster.exr", "--json")
+    difference = json.loads(compare.out)
+    if difference["nan"] or difference["inf"]:
+        faults.append("pixels that are not finite: %(nan)d NaN, %(inf)d infinite" % difference)
+    return name, "rendered", said[0] if said else "", faults
+
+
+work = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="heliograph_hostile_")).resolve()
+work.mkdir(parents=True, exist_ok=True)
+try:
+    document, data = good_files.gltf()
+    good = {".gltf": good_files.gltf_text(document, data), ".glb": good_files.glb(document, data), ".obj": good_files.OBJ,
+            ".ply": good_files.ply("ascii"), ".stl": good_files.stl_text()}
+    (work / "good").mkdir()
+    for name, content in (("scene.mtl", good_files.MTL), ("image.png", good_files.png())):
+        (work / "good" / name).write_bytes(content)
+    usual = {}  # what is said of good files is no sign of a fault
+    for extension, content in good.items():
+        (work / "good" / ("scene" + extension)).write_bytes(content)
+        usual[extension] = set()
+        for pipeline in ("path", "raster"):
+            render = run(work / "good", "render", "scene" + extension, "--size", "8x8", "--spp", "1", "--pipeline", pipeline)
+            if render.code != 0:
+                sys.exit("FAILED the good file scene%s is not rendered: %s" % (extension, render.err))
+            usual[extension].update(remarks(render))
+    base_memory = run(work / "good", "info", "scene.glb").memory
+    cases = [case for case in malformed.CASES if arguments.only in case[0]]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(check, cases))
+finally:
+    if not arguments.keep:
+        shutil.rmtree(work, ignore_errors=True)
+failed = 0
+for name, outcome, line, faults in results:
+    if arguments.list:
+        print("%-8s %s: %s" % (outcome, name, line))
+    for fault in faults:
+        print("FAILED %s: %s" % (name, fault))
+    failed += bool(faults)
+count = collections.Counter(outcome for _, outcome, _, _ in results)
+print("%d malformed files: %d refused, %d rendered with a warning, %d failed"
+      % (len(results), count["refused"], count["rendered"], failed))
+if not arguments.only and len(results) < 200:
+    sys.exit("FAILED fewer than 200 files")
+sys.exit(1 if failed else 0)
