@@ -170,6 +170,19 @@ for pipeline in path raster; do
     check "$pipeline, Ctrl-C in set-up leaves the files" test "$(cat before.exr before.json | sort -u)" = precious
 done
 
+yes 'v 0.123456 0.5 0.25' | head -n 6000000 >large.obj
+echo 'f 1 2 3' >>large.obj
+for command in info render; do
+    "$program" $command large.obj >out.txt 2>err.txt &
+    child=$!
+    sleep 0.3
+    kill -INT $child
+    wait $child
+    check "Ctrl-C while $command loads exits 130" test $? -eq 130
+    check "Ctrl-C while $command loads says so" grep -q interrupted err.txt
+done
+rm large.obj
+
 "$program" render sample:cornell --size 64x48 --spp 1000000 --quiet -o cancelled.exr &
 child=$!
 sleep 3
