@@ -234,6 +234,16 @@ PathCounters PathTracer::counters() const {
     return {c.camera, c.bounce, c.shadow, c.cut, c.abandoned};
 }
 
+void PathTracer::setCounters(const PathCounters& c) {
+    assert(impl_->begun_);
+    impl_->last_ = {0, 0, c.cameraRays, c.bounceRays, c.shadowRays, c.truncatedPaths, c.abandonedRays};
+    impl_->counters_.upload(&impl_->last_, sizeof impl_->last_);
+}
+
+Image PathTracer::importState(Graph& graph) {
+    return graph.import(impl_->state_);
+}
+
 FirstHits PathTracer::firstHits() {
     return impl_->firstHits();
 }

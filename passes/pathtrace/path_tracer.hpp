@@ -84,6 +84,10 @@ public:
     void setTurnBudget(std::uint32_t turns);
 
     PathCounters counters() const;
+    /** For a render that goes on: the counters so far. The film and the state, which importState() gives, are
+     * brought back by the caller, after a first advance(). */
+    void setCounters(const PathCounters& counters);
+    Image importState(Graph& graph);
     FirstHits firstHits();
 
     /** Device times of all dispatches so far, by pass. */

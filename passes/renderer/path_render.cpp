@@ -1,6 +1,7 @@
 #include "passes/renderer/path_render.hpp"
 
 #include "engine/film/variance.hpp"
+#include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/sample_schedule.hpp"
 
@@ -17,9 +18,11 @@ namespace {
 /** The loop over batches, and what is told about it. */
 class PathLoop {
 public:
-    PathLoop(PathTracer& tracer, FilmTarget& target, RenderJob& job, bool cpuDevice)
+    PathLoop(PathTracer& tracer, FilmTarget& target, Checkpointing& checkpoints, RenderJob& job,
+             bool cpuDevice)
         : tracer_(tracer),
           target_(target),
+          checkpoints_(checkpoints),
           job_(job),
           cpuDevice_(cpuDevice),
           schedule_(job.options),
@@ -27,12 +30,23 @@ public:
 
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
-        std::uint32_t reached = 0;
+        std::uint32_t reached = 0, underWay = 0;
+        if (const auto checkpoint = checkpoints_.resume()) {
+            reached = checkpoint->reached;
+            underWay = checkpoint->end;
+        }
         for (;;) {
-            const std::uint32_t end = schedule_.next(reached, job_.seconds());
-            if (end == reached || !trace(end, reached)) return reached;
-            reached = end;
-            if (judged(reached)) return reached;
+            std::uint32_t end = underWay > reached ? underWay : schedule_.next(reached, job_.seconds());
+            if (end != reached && !trace(end, reached)) {
+                checkpoints_.save(reached, end);
+                return reached;
+            }
+            if (end != reached) {
+                reached = end;
+                if (!judged(reached)) continue;
+            }
+            checkpoints_.save(reached, reached);
+            return reached;
         }
     }
 
@@ -45,6 +59,7 @@ private:
             done = tracer_.advance(end);
             budget_.took(ownSeconds(watch));
             if (!job_.notify(progress(done ? end : reached)) && !done) return false;
+            checkpoints_.saveWhenDue(done ? end : reached, end);
         }
         return true;
     }
@@ -99,6 +114,7 @@ private:
 
     PathTracer& tracer_;
     FilmTarget& target_;
+    Checkpointing& checkpoints_;
     RenderJob& job_;
     bool cpuDevice_;
     SampleSchedule schedule_;
@@ -179,9 +195,10 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     if (job.options.auxiliary) hits = tracer.firstHits();
     const std::vector<PassTiming> compiling = tracer.timings();
     if (!job.notify({.stage = "compile"})) return;
+    Checkpointing checkpoints(device, tracer, target.film(), scene.identity, view, job);
     job.beginRendering();
 
-    result.samples = PathLoop(tracer, target, job, device.info().type == "cpu").run();
+    result.samples = PathLoop(tracer, target, checkpoints, job, device.info().type == "cpu").run();
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
     job.finish();

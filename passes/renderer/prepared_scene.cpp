@@ -56,6 +56,7 @@ PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Envir
         lit.environment = environment;
         prepared_ = std::make_unique<PreparedScene>(device_, lit, pack);
     }
+    prepared_->identity = identity;
     identity_ = identity;
     pack_ = pack;
     ++builds_;

@@ -21,6 +21,7 @@ struct PreparedScene {
     PreparedScene(Device& device, const Scene& scene, const PackOptions& pack);
     ~PreparedScene();
     DeviceScene deviceScene;
+    SceneIdentity identity;
     Scene::Bounds bounds;
     std::vector<std::string> features;
     std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why

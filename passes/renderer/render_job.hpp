@@ -31,13 +31,19 @@ public:
         result.setupCpuSeconds = setup_.cpuSeconds();
         rendering_.emplace();
     }
-    /** Seconds of rendering so far. */
-    double seconds() const { return rendering_ ? rendering_->seconds() : 0; }
+    /** Seconds of rendering so far, those before a checkpoint included. */
+    double seconds() const { return earlier_ + (rendering_ ? rendering_->seconds() : 0); }
+    double cpuSeconds() const { return earlierCpu_ + (rendering_ ? rendering_->cpuSeconds() : 0); }
+    /** The render goes on from where another process left it. */
+    void goOnAfter(double seconds, double cpuSeconds) {
+        earlier_ = seconds;
+        earlierCpu_ = cpuSeconds;
+    }
     /** Notes the times; whoever was cancelled before rendering has all of it as set-up. */
     void finish() {
         if (!rendering_) beginRendering();
-        result.seconds = rendering_->seconds();
-        result.renderCpuSeconds = rendering_->cpuSeconds();
+        result.seconds = seconds();
+        result.renderCpuSeconds = cpuSeconds();
     }
     /** Adds device times, summed by name. */
     void addTimings(const std::vector<PassTiming>& timings);
@@ -45,6 +51,7 @@ public:
 private:
     Stopwatch setup_;
     std::optional<Stopwatch> rendering_;
+    double earlier_ = 0, earlierCpu_ = 0;
 };
 
 }  // namespace helio

@@ -53,6 +53,10 @@ void check(const RenderOptions& options) {
            fmt::format("{} texels", shadows.filterRadius), "give up to 16");
     refuse(!(shadows.lightSize >= 0 && shadows.lightSize < 1e30f), "shadows.lightSize",
            fmt::format("{}", shadows.lightSize), "give a size that is not negative");
+    refuse(options.resume && options.checkpoint.empty(), "resume", "there is no checkpoint to resume from",
+           "name the file as checkpoint");
+    refuse(options.pipeline == Pipeline::Raster && !options.checkpoint.empty(), "checkpoint",
+           "the raster pipeline is done at once", "leave it out");
     if (!options.environment) return;
     const Environment& environment = *options.environment;
     for (int c = 0; c < 3; ++c) {

@@ -141,8 +141,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         return;
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
-    for (const char* option :
-         {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--lights", "--no-nee"}) {
+    for (const char* option : {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--lights",
+                               "--no-nee", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -360,6 +360,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command
         ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
         ->capture_default_str();
+    command->add_option(
+        "--checkpoint", options.checkpoint,
+        "File in which the render's state is saved now and then, on interruption and at the end");
+    command->add_flag("--resume", options.resume, "Go on from the --checkpoint file where it is there")
+        ->needs("--checkpoint");
     command->add_option("--stats", arguments->stats, "Write the statistics as JSON");
     command->add_option("--graph", arguments->graph, "Write the render graph for Graphviz");
     command->add_flag("--validate", arguments->validate,

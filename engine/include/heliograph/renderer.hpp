@@ -91,6 +91,15 @@ struct RenderOptions {
     Antialiasing antialiasing;  ///< of the raster pipeline
     Shadows shadows;            ///< of the raster pipeline
     bool auxiliary = true;      ///< also albedo, normal, depth, variance, samples, ids
+    /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
+     * rarely, so that it takes a twentieth of the time at most), when it is cancelled and when it ends;
+     * empty: nowhere. */
+    std::filesystem::path checkpoint = {};
+    double checkpointSeconds = 10;
+    /** Goes on from the checkpoint where it is there, to the bits of a render that was never stopped (one
+     * with maxSeconds may take other numbers of samples). A checkpoint of another scene, device or options is
+     * refused. */
+    bool resume = false;
     /** Called between dispatches; return false to cancel: what is done is returned, `cancelled` set. */
     std::function<bool(const Progress&)> progress;
 };

@@ -1,0 +1,122 @@
+#include "passes/renderer/checkpointing.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/version.hpp>
+
+#include <fmt/format.h>
+#include <heliograph_kernels/film.hpp>
+
+#include <algorithm>
+
+namespace helio {
+
+std::vector<std::pair<std::string, std::string>> checkpointSettings(const RenderOptions& options,
+                                                                    const SceneIdentity& scene,
+                                                                    const View& view,
+                                                                    const DeviceInfo& device) {
+    std::string camera = fmt::format("{} {} {} {}", view.camera.perspective, view.camera.yfov,
+                                     view.camera.ymag, view.camera.znear);
+    for (glm::length_t c = 0; c < 4; ++c)
+        for (glm::length_t r = 0; r < 3; ++r) camera += fmt::format(" {}", view.transform[c][r]);
+    return {{"version", std::string(version())},
+            {"device", device.name},
+            {"scene", fmt::format("{:016x}{:016x}", scene.words[0], scene.words[1])},
+            {"camera", camera},
+            {"size", fmt::format("{}x{}", options.size[0], options.size[1])},
+            {"number of samples", std::to_string(options.samples)},
+            {"error limit", fmt::format("{}", options.maxError)},
+            {"time limit", fmt::format("{}", options.maxSeconds)},
+            {"depth limit", std::to_string(options.maxDepth)},
+            {"pixel filter", std::to_string(int(options.filter))},
+            {"sampler", std::to_string(int(options.sampler))},
+            {"choice of lights", std::to_string(int(options.lights))},
+            {"next-event estimation", options.nextEventEstimation ? "on" : "off"},
+            {"seed", std::to_string(options.seed)}};
+}
+
+Checkpointing::Checkpointing(Device& device, PathTracer& tracer, Film& film, const SceneIdentity& scene,
+                             const View& view, RenderJob& job)
+    : device_(device), tracer_(tracer), film_(film), job_(job) {
+    if (job.options.checkpoint.empty()) return;
+    settings_ = checkpointSettings(job.options, scene, view, device.info());
+    Graph graph(device);
+    const std::uint64_t pixels = std::uint64_t(film.width()) * film.height();
+    const auto keep = [&](const char* name, Image from, std::uint64_t texels, std::uint32_t width,
+                          std::uint32_t height) {
+        const Buffer saved = graph.buffer(name, {texels * 16});
+        graph.compute(name, shaders::imageSave)
+            .reads({{"uImage", from}})
+            .overwrites({{"uSaved", saved}})
+            .record([width, height](Commands& c) { c.dispatchOver(width, height); });
+        return graph.readback<float>(saved);
+    };
+    readFilm_ = keep("checkpoint.film", film.import(graph), pixels * 6, film.width() * 2, film.height() * 3);
+    readState_ =
+        keep("checkpoint.state", tracer.importState(graph), pixels * 8, film.width() * 4, film.height() * 2);
+    reading_ = graph.compile({.executionsInFlight = 1});
+}
+
+std::optional<Checkpoint> Checkpointing::resume() {
+    if (!job_.options.resume) return std::nullopt;
+    if (!std::filesystem::exists(job_.options.checkpoint)) {
+        job_.result.warnings.push_back(
+            fmt::format("{} is not there: the render begins anew", job_.options.checkpoint.string()));
+        return std::nullopt;
+    }
+    Checkpoint checkpoint = loadCheckpoint(job_.options.checkpoint, settings_);
+    restore(checkpoint);
+    checkpoint.film = {};
+    checkpoint.state = {};
+    job_.goOnAfter(checkpoint.seconds, checkpoint.cpuSeconds);
+    saved_ = job_.seconds();
+    return checkpoint;
+}
+
+void Checkpointing::restore(const Checkpoint& checkpoint) {
+    const std::uint64_t pixels = std::uint64_t(film_.width()) * film_.height();
+    if (checkpoint.film.size() != pixels * 24 || checkpoint.state.size() != pixels * 32)
+        throw InputError(job_.options.checkpoint.string(), "", "is damaged", "render again without --resume");
+    DeviceBuffer film = makeBuffer(device_, "checkpoint.film", checkpoint.film);
+    DeviceBuffer state = makeBuffer(device_, "checkpoint.state", checkpoint.state);
+    Graph graph(device_);
+    const auto bring = [&](const char* name, DeviceBuffer& from, Image to) {
+        graph.compute(name, shaders::imageRestore)
+            .reads({{"uSaved", graph.import(from), Format::RGBA32F}})
+            .overwrites({{"uImage", to}})
+            .record([to](Commands& c) { c.dispatchOver(to); });
+    };
+    bring("checkpoint.film", film, film_.import(graph));
+    bring("checkpoint.state", state, tracer_.importState(graph));
+    Plan plan = graph.compile();
+    plan.wait(plan.execute());
+    const auto& c = checkpoint.counters;
+    tracer_.setCounters({c[0], c[1], c[2], c[3], c[4]});
+}
+
+void Checkpointing::saveWhenDue(std::uint32_t reached, std::uint32_t end) {
+    if (job_.options.checkpoint.empty()) return;
+    // Saving takes a twentieth of the time at most.
+    const double pause = std::max(job_.options.checkpointSeconds, 20 * took_);
+    if (job_.seconds() >= saved_ + pause) save(reached, end);
+}
+
+void Checkpointing::save(std::uint32_t reached, std::uint32_t end) {
+    if (job_.options.checkpoint.empty()) return;
+    const Stopwatch watch;
+    const PathCounters c = tracer_.counters();
+    Checkpoint checkpoint;
+    checkpoint.settings = settings_;
+    checkpoint.reached = reached;
+    checkpoint.end = end;
+    checkpoint.seconds = job_.seconds();
+    checkpoint.cpuSeconds = job_.cpuSeconds();
+    checkpoint.counters = {c.cameraRays, c.bounceRays, c.shadowRays, c.truncatedPaths, c.abandonedRays};
+    const Execution execution = reading_.execute();
+    checkpoint.film = readFilm_.wait(execution);
+    checkpoint.state = readState_.wait(execution);
+    saveCheckpoint(job_.options.checkpoint, checkpoint);
+    took_ = watch.seconds();
+    saved_ = job_.seconds();
+}
+
+}  // namespace helio
