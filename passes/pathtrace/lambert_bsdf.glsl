@@ -50,10 +50,7 @@ bool scatters(SurfaceBsdf bsdf) {
 vec3 ownLight(SurfaceBsdf bsdf) {
     return vec3(0.0);
 }
-SurfaceValue surfaceValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
-    const float cosine = dot(s.shading, wi);
-    return SurfaceValue(dot(s.face, wi) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
-}
+/** A direction drawn; what it is worth comes from surfaceValues. */
 SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
     SurfaceSample r;
     float cosine;
@@ -62,5 +59,10 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     r.weight = bsdf.albedo;
     r.goes = dot(s.face, r.direction) > 0.0;
     return r;
+}
+/** Values of a direction to a light, where one `asks`, and of the direction drawn. */
+SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, inout SurfaceSample next) {
+    const float cosine = dot(s.shading, toLight);
+    return SurfaceValue(dot(s.face, toLight) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
 }
 #endif

@@ -15,8 +15,9 @@
 
 /** Those of lambert_bsdf.glsl, and one to choose a lobe and a wavelength. */
 const uint DIMENSIONS_PER_SCATTERING = 4u;
-/** Turns of loops that a scattering may take: Beckmann's slopes are found by iteration. */
-const uint LOOP_TURNS = HAS_MODELS ? 40u : 0u;
+/** Turns of loops that a scattering may take: Beckmann's slopes are found by iteration,
+ * and values are summed in one. */
+const uint LOOP_TURNS = HAS_MODELS ? 40u : 5u;
 const float LEAST_COSINE = 0.01;
 
 struct SurfaceBsdf {
@@ -142,30 +143,7 @@ ScatterValue localValue(SurfaceBsdf bsdf, vec3 wi) {
     return v;
 }
 
-/** What comes from one side of the true surface: of the lobe there, and of what is mirrored to it. */
-ScatterValue foldedValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
-    const float height = dot(s.face, wi);
-    const bool above = height > 0.0;
-    const vec3 local = wi * bsdf.frame;
-    ScatterValue sum = noScattering();
-    const bool lobe = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
-    if (lobe) sum = localValue(bsdf, local);
-    if (HAS_NORMALS || HAS_NORMAL_MAPS) {
-        const vec3 mirror = (wi - 2.0 * height * s.face) * bsdf.frame;
-        const bool folded = (mirror.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
-        if (folded) {
-            const ScatterValue v = localValue(bsdf, mirror);
-            sum = ScatterValue(sum.value + v.value, sum.density + v.density);
-        }
-    }
-    return sum;
-}
-
-SurfaceValue surfaceValue(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
-    const ScatterValue v = foldedValue(bsdf, s, wi);
-    return SurfaceValue(v.density, v.density > 0.0 ? v.value / v.density : vec3(0.0));
-}
-
+/** A direction drawn; what it is worth, but for mirrors, comes from surfaceValues. */
 SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
     ScatterSample chosen = noSample();
     if (HAS_GLTF && bsdf.model == 0u) chosen = gltfSample(bsdf.gltf, bsdf.wo, vec3(u, choice));
@@ -175,11 +153,35 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     const float height = dot(s.face, r.direction);
     if ((height > 0.0) != (chosen.direction.z > 0.0)) r.direction -= 2.0 * height * s.face;
     r.direction = normalize(r.direction);
-    const SurfaceValue v = surfaceValue(bsdf, s, r.direction);
-    const bool isMirror = chosen.density < 0.0;
-    r.density = isMirror ? -1.0 : v.density;
-    r.weight = isMirror ? chosen.weight : v.weight;
-    r.goes = !bsdf.unlit && chosen.density != 0.0 && (isMirror || v.density > 0.0) && max(max(r.weight.x, r.weight.y), r.weight.z) > 0.0;
+    r.density = chosen.density;
+    r.weight = chosen.weight;
+    r.goes = !bsdf.unlit && chosen.density != 0.0;
     return r;
+}
+
+const bool HAS_FOLDS = HAS_NORMALS || HAS_NORMAL_MAPS;
+
+/** Values of a direction to a light, where one `asks`, and of the direction drawn: each of the lobe there, and of what
+ * is mirrored to it. One loop, not unrolled: the code of all materials is in the kernel once. */
+SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, inout SurfaceSample next) {
+    ScatterValue lit = noScattering(), drawn = noScattering();
+    const int ways = HAS_FOLDS ? 2 : 1;
+    [[dont_unroll]] for (int i = asks ? 0 : ways; i < 2 * ways; ++i) {
+        const bool isDrawn = i >= ways;
+        const vec3 wi = isDrawn ? next.direction : toLight;
+        const float height = dot(s.face, wi);
+        const bool above = height > 0.0, mirrors = HAS_FOLDS && (i & 1) == 1;
+        const vec3 local = (wi - (mirrors ? 2.0 * height : 0.0) * s.face) * bsdf.frame;
+        const bool counts = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
+        const ScatterValue v = localValue(bsdf, local);
+        if (counts && isDrawn) drawn = ScatterValue(drawn.value + v.value, drawn.density + v.density);
+        if (counts && !isDrawn) lit = ScatterValue(lit.value + v.value, lit.density + v.density);
+    }
+    if (next.density >= 0.0) {
+        next.density = drawn.density;
+        next.weight = drawn.density > 0.0 ? drawn.value / drawn.density : vec3(0.0);
+    }
+    next.goes = next.goes && max(max(next.weight.x, next.weight.y), next.weight.z) > 0.0;
+    return SurfaceValue(lit.density, lit.density > 0.0 ? lit.value / lit.density : vec3(0.0));
 }
 #endif

@@ -86,11 +86,17 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     bool alive = goesOn && !cut;
     const uvec2 choice = sampleBits2D(SAMPLER_KIND, numbers, dimension + 2u);
 
-    shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
+    SurfaceSample next = sampleSurface(bsdf, s, sample2D(SAMPLER_KIND, numbers, dimension + 1u), lobe.x);
+    LightSample light;
+    light.direction = s.face;
     if (LIGHT_COUNT > 0) {
         path.lightPlace = lightPlace(s.position, s.face);
-        const LightSample light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
-        const SurfaceValue scattered = surfaceValue(bsdf, s, light.direction);
+        light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
+    }
+    const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, next);
+
+    shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
+    if (LIGHT_COUNT > 0) {
         const float weight = light.density > 0.0 ? light.density / (light.density + scattered.density) : 1.0;
         shadow.origin = leaving(s, light.direction);
         shadow.radiance = path.throughput * scattered.weight * light.radiance * (scattered.density * weight);
@@ -100,7 +106,6 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         shadow.limit = asks ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
     }
 
-    const SurfaceSample next = sampleSurface(bsdf, s, sample2D(SAMPLER_KIND, numbers, dimension + 1u), lobe.x);
     path.direction = next.direction;
     path.density = next.density;
     path.throughput *= next.weight;

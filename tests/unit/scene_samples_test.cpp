@@ -110,8 +110,9 @@ TEST(Cornell, IsLambertian) {
     }
 }
 
-TEST(Samples, AreFour) {
-    EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "instances", "lights500", "materials", "terrain"}));
+TEST(Samples, AreEight) {
+    EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "gallery", "glass", "instances",
+                                                       "lights500", "materials", "plates", "terrain"}));
 }
 
 class EverySample : public testing::TestWithParam<std::string> {};
