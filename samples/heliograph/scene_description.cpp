@@ -3,6 +3,7 @@
 #include "console.hpp"
 
 #include <heliograph/features.hpp>
+#include <heliograph/pose.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
@@ -137,7 +138,7 @@ std::string members(const Json& object) {
 
 Json describeScene(const Scene& scene) {
     const SceneFeatures features(scene);
-    const Scene::Bounds bounds = scene.bounds();
+    const Scene::Bounds bounds = needsPose(scene) ? posed(scene).bounds() : scene.bounds();
     const std::vector<Instance> instances = scene.instances();
     const std::vector<const Material*> materials = shownMaterials(scene, instances);
     std::size_t vertices = 0;

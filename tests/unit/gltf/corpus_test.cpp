@@ -1,6 +1,12 @@
 #include "tests/unit/gltf/corpus.hpp"
 
 namespace helio::test {
+
+/** GoogleTest shows this for a file, not its bytes. */
+static void PrintTo(const CorpusFile& file, std::ostream* out) {
+    *out << file.name;
+}
+
 namespace {
 
 class GltfCorpus : public Gltf, public testing::WithParamInterface<CorpusFile> {};
