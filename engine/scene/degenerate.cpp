@@ -15,12 +15,15 @@ namespace {
 /** What a unit cube may become: below, single precision loses even the sides. */
 constexpr double smallestVolume = 1e-90;
 
+/** What products of a triangle's edges must exceed for single precision to hold them. */
+constexpr double smallestArea = 0x1p-126;
+
 bool hasArea(const Primitive& primitive, std::size_t triangle) {
     const std::uint32_t* const corner = &primitive.indices[triangle * 3];
     const glm::dvec3 a = primitive.positions[corner[0]];
     const glm::dvec3 area = glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a,
                                        glm::dvec3(primitive.positions[corner[2]]) - a);
-    return area != glm::dvec3(0);
+    return glm::any(glm::greaterThan(glm::abs(area), glm::dvec3(smallestArea)));
 }
 
 std::size_t trianglesWithoutArea(const Primitive& primitive) {
