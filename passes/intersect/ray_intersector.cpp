@@ -29,7 +29,10 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     Graph graph(device);
     const Buffer counters = graph.import(counters_);
     graph
-        .compute("intersect", shaders::intersect,
+        .compute("intersect",
+                 packed.accelerator == AcceleratorKind::Bvh
+                     ? shaders::intersect
+                     : compileVariant(shaders::intersectEach, acceleratorVariant(packed.accelerator)),
                  {.spec = {{"ANY", question == RayQuestion::Any},
                            {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}}})
         .reads({{"uTriangles", graph.import(triangles_)},

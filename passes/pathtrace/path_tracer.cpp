@@ -74,9 +74,11 @@ struct PathTracer::Impl {
     }
 
     /** The kernel as built, or for more than diffuse surfaces, with what needs bindings of its own, or with
-     * the scene written out. */
+     * the scene written out or another accelerator. */
     Kernel kernel(const Kernel& built, std::map<std::string, std::string> defines = {}) const {
         defines.insert(materialDefines_.begin(), materialDefines_.end());
+        if (scene_.info().accelerator != AcceleratorKind::Bvh)
+            defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
         if (!unrolled_ && defines.empty()) return built;
         return compileVariant(built, {.defines = defines, .generated = generated_});
     }
@@ -215,7 +217,9 @@ PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
-    return {.tree = scene.triangleCount() > kUnrolledTriangles,
+    const bool choose = options.accelerator == AcceleratorKind::Auto;
+    return {.tree = !choose || scene.triangleCount() > kUnrolledTriangles,
+            .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
             .sampleSurfaces = options.nextEventEstimation,
             .lights = options.lights};
 }

@@ -35,6 +35,7 @@ struct PathTraceOptions {
     std::array<std::uint32_t, 2> size = {0, 0};  ///< pixels
     std::uint32_t maxDepth = kUnlimitedDepth;    ///< scatterings at most: 0 emission only, 1 direct light
     bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
+    AcceleratorKind accelerator = AcceleratorKind::Auto;
     SamplerKind sampler = SamplerKind::Sobol;
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;

@@ -29,6 +29,7 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"depth limit", std::to_string(options.maxDepth)},
             {"pixel filter", std::to_string(int(options.filter))},
             {"sampler", std::to_string(int(options.sampler))},
+            {"accelerator", std::to_string(int(options.accelerator))},
             {"choice of lights", std::to_string(int(options.lights))},
             {"next-event estimation", options.nextEventEstimation ? "on" : "off"},
             {"seed", std::to_string(options.seed)}};

@@ -173,6 +173,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
                           ? kUnlimitedDepth
                           : std::uint32_t(std::min<std::int64_t>(options.maxDepth, kUnlimitedDepth));
     result.nextEventEstimation = options.nextEventEstimation;
+    result.accelerator = options.accelerator;
     result.sampler = options.sampler;
     result.samples = options.samples;
     result.lights = options.lights;

@@ -33,7 +33,10 @@ void checkAxes(const Scene& scene, const PlacedCamera& placed) {
 }  // namespace
 
 PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptions& pack)
-    : deviceScene(device, scene, pack), bounds(scene.bounds()), skipped(scene.skipped), warnings(deviceScene.info().warnings) {
+    : deviceScene(device, scene, pack),
+      bounds(scene.bounds()),
+      skipped(scene.skipped),
+      warnings(deviceScene.info().warnings) {
     const SceneFeatures all(scene);
     features = all.present();
     for (const SceneFeatures::Absent& absent : all.absent()) skipped.emplace_back(absent.name, absent.why);

@@ -7,7 +7,9 @@
 
 #include <chrono>
 #include <cstring>
+#include <numeric>
 #include <set>
+#include <string>
 
 namespace helio {
 namespace {
@@ -71,11 +73,45 @@ std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& sce
     return {result.anywhere.begin(), result.anywhere.end()};
 }
 
+namespace {
+
+/** Packs the accelerator; returns the triangle of every slot. */
+std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, const PackOptions& options,
+                                      PackedScene& packed) {
+    std::vector<std::uint32_t> order(packed.triangleCount);
+    std::iota(order.begin(), order.end(), 0u);
+    if (!options.tree || packed.triangleCount == 0) return order;
+    const auto start = std::chrono::steady_clock::now();
+    packed.accelerator = options.accelerator;
+    if (options.accelerator == AcceleratorKind::Bvh) {
+        Bvh tree = buildBvh(positions);
+        packed.nodeCount = std::uint32_t(tree.nodes.size());
+        packed.treeDepth = tree.depth;
+        static_assert(sizeof(BvhNode) == 5 * sizeof(glm::uvec4));
+        packed.nodes.resize(tree.nodes.size() * 5);
+        std::memcpy(packed.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BvhNode));
+        order = std::move(tree.order);
+    } else {
+        Comparator built = buildComparator(options.accelerator, positions);
+        packed.nodeCount = std::uint32_t(built.words.size());
+        packed.treeDepth = built.depth;
+        packed.nodes = std::move(built.words);
+    }
+    packed.treeSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return order;
+}
+
+}  // namespace
+
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
            bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) +
            bytesOf(textures) + bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) +
            bytesOf(lightSlots) + bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
+}
+
+KernelVariant acceleratorVariant(AcceleratorKind kind) {
+    return {.defines = {{"ACCELERATOR", std::to_string(int(kind))}}, .generated = {}};
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
@@ -89,21 +125,7 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     pack::environment(scene, packed);
     pack::lights(scene, positions, surfaces, options, packed);
 
-    std::vector<std::uint32_t> order;
-    if (options.tree && packed.triangleCount > 0) {
-        const auto start = std::chrono::steady_clock::now();
-        Bvh tree = buildBvh(positions);
-        packed.treeSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        packed.nodeCount = std::uint32_t(tree.nodes.size());
-        packed.treeDepth = tree.depth;
-        static_assert(sizeof(BvhNode) == 5 * sizeof(glm::uvec4));
-        packed.nodes.resize(tree.nodes.size() * 5);
-        std::memcpy(packed.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BvhNode));
-        order = std::move(tree.order);
-    } else {
-        order.resize(packed.triangleCount);
-        for (std::uint32_t i = 0; i < packed.triangleCount; ++i) order[i] = i;
-    }
+    const std::vector<std::uint32_t> order = accelerate(positions, options, packed);
     packed.triangles.reserve(std::size_t(packed.triangleCount) * 3);
     for (std::uint32_t g : order) {
         packed.triangles.push_back(withBits(positions[g * 3 + 0], g));

@@ -4,6 +4,9 @@
  * and lights. Host only, so that packing is tested without a device; DeviceScene uploads the result. Every
  * array is a whole number of 16-byte texels and is described beside its accessors in shaders/scene.
  */
+#include "engine/scene/comparators.hpp"
+
+#include <heliograph/kernel.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
 
@@ -32,6 +35,8 @@ struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
      * order and `nodes` is empty. */
     bool tree = true;
+    /** What finds triangles along a ray, not Auto; only Bvh puts triangles in the order of its leaves. */
+    AcceleratorKind accelerator = AcceleratorKind::Bvh;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
     bool sampleSurfaces = true;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
@@ -47,8 +52,10 @@ struct PackedScene {
     std::vector<glm::vec4> triangles;
     /** First g of every instance, and the number of triangles at the end. */
     std::vector<std::uint32_t> instanceFirst;
-    /** 5 texels a node, see engine/scene/bvh.hpp. Empty without a tree. */
+    /** 5 texels a node, see engine/scene/bvh.hpp; of other accelerators the words of a Comparator. Empty
+     * without a tree. */
     std::vector<glm::uvec4> nodes;
+    AcceleratorKind accelerator = AcceleratorKind::Bvh;  ///< of `nodes`
     /** 3 texels a g (one per vertex): unit world-space shading normal, 0. Empty where no mesh has normals. */
     std::vector<glm::vec4> normals;
     /** 3 texels a g: u, v in the first set that the material's textures name, then in the second; 0 where the
@@ -107,6 +114,10 @@ struct PackedScene {
 
     std::uint64_t bytes() const;
 };
+
+/** What a kernel that intersects through scene_hit.glsl or comparators.glsl is compiled with for another
+ * accelerator than Bvh. */
+KernelVariant acceleratorVariant(AcceleratorKind kind);
 
 /** Flattens a scene. Throws InputError where an index is out of range, a position is not finite in float, or
  * the scene has more triangles or texels than a 32-bit index reaches. */

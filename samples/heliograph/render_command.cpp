@@ -142,7 +142,7 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option : {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--lights",
-                               "--no-nee", "--checkpoint", "--resume"}) {
+                               "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -331,6 +331,16 @@ void addRenderCommand(CLI::App& app, Command& run) {
                             {"uniform", LightChoice::Uniform}},
                            "Choice among lights: adaptive (default) by place and normal; power; uniform");
     command->add_flag("--no-nee", arguments->noNextEvent, "Trace without next-event estimation");
+    addChoice<AcceleratorKind>(
+        command, "--accelerator", options.accelerator,
+        {{"auto", AcceleratorKind::Auto},
+         {"bvh", AcceleratorKind::Bvh},
+         {"brute-force", AcceleratorKind::BruteForce},
+         {"grid", AcceleratorKind::Grid},
+         {"octree", AcceleratorKind::Octree},
+         {"kd-tree", AcceleratorKind::KdTree},
+         {"bsp", AcceleratorKind::Bsp}},
+        "auto (default); bvh, brute-force, grid, octree, kd-tree, bsp: same image, other times");
     addChoice<bool>(command, "--cull", options.cullBackFaces, {{"none", false}, {"back", true}},
                     "none (default) or back: faces the raster pipeline leaves out");
     command->add_option(

@@ -1,7 +1,11 @@
 #ifndef HELIOGRAPH_INTERSECTION_SCENE_HIT
 #define HELIOGRAPH_INTERSECTION_SCENE_HIT
 /** @file What a ray meets in the scene, through the tree or, where it is written out, by testing each triangle. */
+#ifdef ACCELERATOR
+#include "shaders/intersection/comparators.glsl"
+#else
 #include "shaders/intersection/traverse.glsl"
+#endif
 #include "shaders/scene/features.glsl"
 
 // Defines testAll() and testAny() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).

@@ -84,6 +84,18 @@ TEST(PathDeterminism, SamplersAgree) {
 }
 
 /** Not a test of its own: what RunsWithOneAndTwoThreads starts. */
+TEST(PathDeterminism, AcceleratorsDoNotMatter) {
+    const auto hash = [](AcceleratorKind kind) {
+        PathTraceOptions o = options(30000);
+        o.accelerator = kind;
+        return hashOf(trace(ballInRoom(), o, 16));
+    };
+    const std::uint64_t wanted = hash(AcceleratorKind::Auto);
+    for (AcceleratorKind kind : {AcceleratorKind::Bvh, AcceleratorKind::BruteForce, AcceleratorKind::Grid,
+                                 AcceleratorKind::Octree, AcceleratorKind::KdTree, AcceleratorKind::Bsp})
+        EXPECT_EQ(hash(kind), wanted) << int(kind);
+}
+
 TEST(PathDeterminism, PrintHash) {
     std::uint64_t hash = 0;
     for (const Scene& scene : {load("sample:cornell"), ballInRoom()})

@@ -1,5 +1,6 @@
 #pragma once
 /** @file The embedding interface: a scene in, an image with its error and its time out. */
+#include <heliograph/accelerator.hpp>
 #include <heliograph/device.hpp>
 #include <heliograph/image.hpp>
 #include <heliograph/scene.hpp>
@@ -82,6 +83,7 @@ struct RenderOptions {
     SamplerKind sampler = SamplerKind::Sobol;
     bool nextEventEstimation = true;
     LightChoice lights = LightChoice::Adaptive;
+    AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
     std::uint32_t seed = 0;
     std::string camera;                      ///< name or index; empty for the first
     double frameTime = 0;                    ///< seconds; the scene is shown as posed() makes it

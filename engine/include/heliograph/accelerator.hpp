@@ -1,0 +1,18 @@
+#pragma once
+/** @file What finds the triangles along a ray. */
+#include <cstdint>
+
+namespace helio {
+
+/** The values from BruteForce on are those of shaders/intersection/comparators.glsl. */
+enum class AcceleratorKind : std::uint8_t {
+    Auto,        ///< few triangles are written out as code, more get a Bvh
+    Bvh,         ///< bounding volume hierarchy: the fastest
+    BruteForce,  ///< every triangle is tested; to compare with, like all below
+    Grid,
+    Octree,
+    KdTree,
+    Bsp
+};
+
+}  // namespace helio

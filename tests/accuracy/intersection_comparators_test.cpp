@@ -1,0 +1,100 @@
+// Every accelerator gives the same hits as testing all triangles, bit by bit.
+#include "tests/accuracy/intersection_support.hpp"
+#include "tests/support/meshes.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace helio::test {
+namespace {
+
+constexpr std::array kKinds = {AcceleratorKind::Bvh, AcceleratorKind::Grid, AcceleratorKind::Octree,
+                               AcceleratorKind::KdTree, AcceleratorKind::Bsp};
+
+/** Random triangles of very uneven size and slenderness, some flat in a plane of the axes, some coincident.
+ */
+Corners mixture() {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    const auto point = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
+    Corners corners;
+    for (int i = 0; i < 1500; ++i) {
+        const glm::vec3 centre = point();
+        const float size = std::exp(1.5f * uniform(random) - 2.5f);
+        for (int k = 0; k < 3; ++k)
+            corners.push_back(centre + size * point() * glm::vec3(1, 1, i % 3 == 0 ? 0 : 1));
+    }
+    for (int i = 0; i < 90; ++i) corners.push_back(corners[std::size_t(i)]);
+    return corners;
+}
+
+std::vector<RayHit> hitsOf(AcceleratorKind kind, const Scene& scene, RayQuestion question,
+                           std::span<const Ray> rays, std::vector<std::uint32_t>& g) {
+    const PackedScene packed = packScene(scene, {.accelerator = kind});
+    RayIntersector intersector(device(), packed, question, rays.size());
+    intersector.upload(rays);
+    intersector.run();
+    EXPECT_EQ(intersector.abandoned(), 0u);
+    const std::vector<RayHit> hits = intersector.hits();
+    g.clear();
+    for (const RayHit& hit : hits)
+        g.push_back(hit.slot < 0 ? ~0u : glm::floatBitsToUint(packed.triangles[std::size_t(hit.slot) * 3].w));
+    return hits;
+}
+
+void expectSameHits(const char* name, const Corners& corners, float reach) {
+    SCOPED_TRACE(name);
+    const Scene scene = sceneOf(corners);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 60000; ++i) {
+        const glm::vec3 origin = reach * glm::vec3(uniform(random), uniform(random), uniform(random));
+        // At corners, so that edges and cells' borders are met; along axes; anywhere.
+        glm::vec3 direction = corners[random() % corners.size()] - origin;
+        if (i % 4 == 1) direction = {uniform(random), uniform(random), uniform(random)};
+        if (i % 8 == 2) direction = glm::vec3(0), direction[i / 8 % 3] = i % 16 == 2 ? 1.0f : -1.0f;
+        rays.push_back({.origin = origin,
+                        .limit = i % 5 == 0 ? 0.9f : std::numeric_limits<float>::infinity(),
+                        .direction = direction});
+    }
+    for (RayQuestion question : {RayQuestion::Closest, RayQuestion::Any}) {
+        std::vector<std::uint32_t> wantedG, g;
+        const std::vector<RayHit> wanted =
+            hitsOf(AcceleratorKind::BruteForce, scene, question, rays, wantedG);
+        const auto found = std::ranges::count_if(wanted, [](const RayHit& hit) { return hit.slot >= 0; });
+        EXPECT_GT(found, 10000);
+        EXPECT_LT(found, 59000);
+        for (AcceleratorKind kind : kKinds) {
+            const std::vector<RayHit> hits = hitsOf(kind, scene, question, rays, g);
+            std::size_t wrong = 0;
+            for (std::size_t i = 0; i < hits.size(); ++i)
+                wrong += question == RayQuestion::Closest
+                             ? (g[i] != wantedG[i] || hits[i].distance != wanted[i].distance ? 1u : 0u)
+                             : ((hits[i].slot < 0) != (wanted[i].slot < 0) ? 1u : 0u);
+            EXPECT_EQ(wrong, 0u) << acceleratorName(kind);
+        }
+    }
+}
+
+TEST(Intersection, AcceleratorsGiveTheHitsOfBruteForce) {
+    expectSameHits("mixture", mixture(), 3.0f);
+    expectSameHits("sphere", octasphere(4), 2.0f);
+    Corners away = octasphere(3);
+    for (glm::vec3& p : away) p = 0.01f * p + glm::vec3(1.0f, 2.0f, 0.0f);
+    expectSameHits("small and away", away, 1.9f);
+}
+
+TEST(Intersection, BruteForceIsRefusedWhereARayCannotTestAll) {
+    EXPECT_THROW(packScene(sceneOf(cloud(kMaxBruteForce + 1)), {.accelerator = AcceleratorKind::BruteForce}),
+                 InputError);
+    EXPECT_NO_THROW(packScene(sceneOf(cloud(kMaxBruteForce)), {.accelerator = AcceleratorKind::BruteForce}));
+    EXPECT_EQ(packScene(Scene{}, {.accelerator = AcceleratorKind::Grid}).nodeCount, 0u);
+}
+
+}  // namespace
+}  // namespace helio::test
