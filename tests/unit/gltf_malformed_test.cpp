@@ -226,6 +226,13 @@ TEST_F(Gltf, TakesMinimumVersionsUpToTwo) {
     }
 }
 
+TEST_F(Gltf, RefusesFilesOfGltfOneByTheirVersion) {
+    const json document = {{"asset", {{"version", "1.0"}}}, {"buffers", {{"name", json::object()}}}};
+    const std::string text = refusal(write("one.gltf", document.dump()), "glTF 1.0");
+    EXPECT_NE(text.find("asset.version"), std::string::npos) << text;
+    EXPECT_NE(text.find("give glTF 2.0"), std::string::npos) << text;
+}
+
 TEST_F(Gltf, RefusesNumbersThatAreNotFinite) {
     for (float wrong : {NAN, INFINITY, -INFINITY}) {
         for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0"}) {

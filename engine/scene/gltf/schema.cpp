@@ -305,12 +305,15 @@ void checkSchema(const std::string& file, const nlohmann::json& document) {
     const Context context{file, document};
     const Place root;
     if (!document.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
-    documentCheck()(context, root, document);
-    const auto& version = document["asset"]["version"].get_ref<const std::string&>();
     const Place asset{&root, "asset", 0};
-    if (!version.starts_with("2.")) {
-        refuse(context, Place{&asset, "version", 0}, "is '" + version.substr(0, 20) + "'", "give glTF 2.0");
+    const nlohmann::json::json_pointer version("/asset/version");
+    // First: all else that is wrong with a glTF 1.0 file, objects where 2.0 has arrays, would mislead.
+    if (document.contains(version) && document[version].is_string() &&
+        !document[version].get_ref<const std::string&>().starts_with("2.")) {
+        refuse(context, Place{&asset, "version", 0},
+               "is '" + document[version].get_ref<const std::string&>().substr(0, 20) + "'", "give glTF 2.0");
     }
+    documentCheck()(context, root, document);
     const std::string minimum = document["asset"].value("minVersion", "2.0");
     if (!isAtMostTwo(minimum)) {
         refuse(context, Place{&asset, "minVersion", 0}, "is '" + minimum.substr(0, 20) + "', above 2.0",
