@@ -13,11 +13,14 @@
 #include "passes/pathtrace/lambert_bsdf.glsl"
 #endif
 #include "shaders/sampling/sampler.glsl"
+#include "shaders/sampling/warp.glsl"
 #include "shaders/scene/lights.glsl"
 
 layout(constant_id = 0) const uint SAMPLER_KIND = SAMPLER_SOBOL;
 layout(constant_id = 1) const bool NEXT_EVENT = true;
 layout(constant_id = 5) const uint SAMPLER_STRATA = 0u;  ///< see startSample()
+layout(constant_id = 6) const bool WHITTED = false;     ///< only mirrors and smooth refraction go on (Whitted 1980)
+layout(constant_id = 7) const bool HEMISPHERE = false;  ///< directions are uniform over the hemisphere
 
 /** Roulette keeps a path with chance min(1, ROULETTE * throughput): chances near the throughput itself end
  * paths that would still have carried light cheaply. The first scattering is spared: dark surfaces would show
@@ -86,7 +89,13 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     bool alive = goesOn && !cut;
     const uvec2 choice = sampleBits2D(SAMPLER_KIND, numbers, dimension + 2u);
 
-    SurfaceSample next = sampleSurface(bsdf, s, sample2D(SAMPLER_KIND, numbers, dimension + 1u), lobe.x);
+    const vec2 turn = sample2D(SAMPLER_KIND, numbers, dimension + 1u);
+    SurfaceSample next = sampleSurface(bsdf, s, turn, lobe.x);
+    if (HEMISPHERE) {
+        next.direction = uniformDirection(s.shading, turn);
+        next.density = turn.x * INV_PI;  // by which its worth is found
+        next.goes = dot(s.face, next.direction) > 0.0;
+    }
     LightSample light;
     light.direction = s.face;
     if (LIGHT_COUNT > 0) {
@@ -97,7 +106,8 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
 
     shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if (LIGHT_COUNT > 0) {
-        const float weight = light.density > 0.0 ? light.density / (light.density + scattered.density) : 1.0;
+        // Without rays that could meet the light there is nothing to weigh against.
+        const float weight = light.density > 0.0 && !WHITTED ? light.density / (light.density + scattered.density) : 1.0;
         shadow.origin = leaving(s, light.direction);
         shadow.radiance = path.throughput * scattered.weight * light.radiance * (scattered.density * weight);
         shadow.target = light.triangles;
@@ -106,6 +116,11 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         shadow.limit = asks ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
     }
 
+    if (HEMISPHERE) {
+        next.weight *= next.density * TWO_PI;
+        next.density = INV_TWO_PI;
+    }
+    if (WHITTED) next.goes = next.goes && next.density < 0.0;
     path.direction = next.direction;
     path.density = next.density;
     path.throughput *= next.weight;

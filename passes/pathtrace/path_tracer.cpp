@@ -116,6 +116,8 @@ struct PathTracer::Impl {
             options_.sampler == SamplerKind::Stratified || options_.sampler == SamplerKind::SobolBlue;
         // Of the two halves of a pixel's samples each.
         if (usesStrata) spec["SAMPLER_STRATA"] = std::uint32_t(std::bit_width((options_.samples - 1) / 2));
+        spec["WHITTED"] = options_.whitted;
+        spec["HEMISPHERE"] = options_.hemisphere;
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         const bool seesThrough = (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
         spec["COUNT_TURNS"] = !unrolled_ || seesThrough;

@@ -27,8 +27,34 @@ bool hasLight(const Scene& scene, const std::optional<Environment>& environment)
     });
 }
 
+Scene whiteScene(const Scene& scene) {
+    Scene white = scene;
+    for (Material& material : white.materials) {
+        Material plain;
+        plain.name = material.name;
+        plain.metallic = 0.0f;
+        plain.specular = 0.0f;
+        plain.normalTexture = material.normalTexture;
+        plain.normalScale = material.normalScale;
+        material = plain;
+    }
+    // What has no material would be glTF's default, a metal.
+    Material plain;
+    plain.metallic = 0.0f;
+    plain.specular = 0.0f;
+    white.materials.push_back(plain);
+    for (Mesh& mesh : white.meshes)
+        for (Primitive& primitive : mesh.primitives) {
+            primitive.colors.clear();
+            if (primitive.material < 0) primitive.material = int(white.materials.size()) - 1;
+        }
+    for (Node& node : white.nodes) node.light = -1;
+    return white;
+}
+
 std::optional<Environment> chooseEnvironment(const Scene& scene, const RenderOptions& options,
                                              std::vector<std::string>& warnings) {
+    if (options.integrator == Integrator::AmbientOcclusion) return Environment{glm::vec3(1.0f), -1};
     const std::optional<Environment>& chosen = options.environment ? options.environment : scene.environment;
     if (hasLight(scene, chosen)) return chosen;
     if (options.environment) {

@@ -13,6 +13,9 @@ namespace helio {
  * intensity, or an environment that is not black. */
 bool hasLight(const Scene& scene, const std::optional<Environment>& environment);
 
+/** The scene for Integrator::AmbientOcclusion: white Lambertian opaque surfaces, no lights. */
+Scene whiteScene(const Scene& scene);
+
 /** The environment to render with: the options' where they give one, else the scene's; for a scene in which
  * nothing gives light, radiance 1 from everywhere. Says so in `warnings`, as it does where the picture stays
  * black because the options ask for a black environment. */

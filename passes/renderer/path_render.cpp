@@ -174,6 +174,13 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
                           : std::uint32_t(std::min<std::int64_t>(options.maxDepth, kUnlimitedDepth));
     result.nextEventEstimation = options.nextEventEstimation;
     result.accelerator = options.accelerator;
+    const bool once = options.integrator == Integrator::Direct ||
+                      options.integrator == Integrator::Hemisphere ||
+                      options.integrator == Integrator::AmbientOcclusion;
+    if (once) result.maxDepth = std::min(result.maxDepth, 1u);
+    result.whitted = options.integrator == Integrator::Whitted;
+    result.hemisphere = options.integrator == Integrator::Hemisphere;
+    if (result.hemisphere) result.nextEventEstimation = false;
     result.sampler = options.sampler;
     result.samples = options.samples;
     result.lights = options.lights;

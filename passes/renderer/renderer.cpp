@@ -53,6 +53,8 @@ void check(const RenderOptions& options) {
            fmt::format("{} texels", shadows.filterRadius), "give up to 16");
     refuse(!(shadows.lightSize >= 0 && shadows.lightSize < 1e30f), "shadows.lightSize",
            fmt::format("{}", shadows.lightSize), "give a size that is not negative");
+    refuse(options.pipeline == Pipeline::Raster && options.integrator != Integrator::Path, "integrator",
+           "the raster pipeline traces no paths", "leave it out");
     refuse(options.resume && options.checkpoint.empty(), "resume", "there is no checkpoint to resume from",
            "name the file as checkpoint");
     refuse(options.pipeline == Pipeline::Raster && !options.checkpoint.empty(), "checkpoint",
@@ -172,6 +174,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
         scene.validate();
     }
     check(options.environment, scene);
+    if (options.integrator == Integrator::AmbientOcclusion) still = whiteScene(still ? *still : scene);
     result.scene = scene.name;
     result.device = impl_->device.info().name;
     result.version = version();

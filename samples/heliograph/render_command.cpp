@@ -141,8 +141,9 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         return;
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
-    for (const char* option : {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--lights",
-                               "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
+    for (const char* option :
+         {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--integrator", "--lights",
+          "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -316,6 +317,15 @@ void addRenderCommand(CLI::App& app, Command& run) {
                             {"gaussian", PixelFilter::Gaussian},
                             {"blackman-harris", PixelFilter::BlackmanHarris}},
                            "Pixel filter: box (default), tent, gaussian, blackman-harris");
+    addChoice<Integrator>(
+        command, "--integrator", options.integrator,
+        {{"path", Integrator::Path},
+         {"direct", Integrator::Direct},
+         {"whitted", Integrator::Whitted},
+         {"ao", Integrator::AmbientOcclusion},
+         {"hemisphere", Integrator::Hemisphere}},
+        "path (default): all of light's ways; direct: one scattering; whitted: mirrors, then "
+        "direct light; ao: ambient occlusion; hemisphere: direct light by uniform directions");
     addChoice<SamplerKind>(
         command, "--sampler", options.sampler,
         {{"sobol", SamplerKind::Sobol},

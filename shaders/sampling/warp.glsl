@@ -25,6 +25,14 @@ void basisAround(vec3 n, out vec3 tangent, out vec3 bitangent) {
     bitangent = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
+/** A direction about the unit vector n, uniform over the hemisphere; its cosine is u.x. */
+vec3 uniformDirection(vec3 n, vec2 u) {
+    vec3 tangent, bitangent;
+    basisAround(n, tangent, bitangent);
+    const vec2 disk = sqrt(max(1.0 - u.x * u.x, 0.0)) * unitCircle(u.y);
+    return tangent * disk.x + bitangent * disk.y + n * u.x;
+}
+
 /** A direction about the unit vector n with density `cosine` / pi over solid angle. */
 vec3 cosineDirection(vec3 n, vec2 u, out float cosine) {
     vec3 tangent, bitangent;

@@ -24,6 +24,12 @@ enum class PixelFilter : std::uint8_t { Box, Tent, Gaussian, BlackmanHarris };
  * independent from pixel to pixel; SobolBlue correlates neighbours so that error is blue noise over the
  * screen. */
 enum class SamplerKind : std::uint8_t { Sobol, Independent, Halton, Stratified, SobolBlue };
+/** What of light's ways is followed: all (Path); those that scatter once (Direct); those over mirrors and
+ * smooth refraction with direct light at their end (Whitted 1980; rough surfaces are lit by what light
+ * sampling finds, which a constant environment is not); the cosine-weighted part of the sky that white opaque
+ * surfaces see (AmbientOcclusion: radiance 1 means all of it); Direct by directions that are uniform over the
+ * hemisphere and sample no light, slow on purpose (Hemisphere). */
+enum class Integrator : std::uint8_t { Path, Direct, Whitted, AmbientOcclusion, Hemisphere };
 /** How one of many lights is chosen: by what each brings to the place (tables over space and normal, built
  * where there are more than a few lights), by power, or each with the same chance. */
 enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
@@ -81,6 +87,7 @@ struct RenderOptions {
     std::int64_t maxDepth = -1;  ///< scatterings; negative: unlimited (65,536)
     PixelFilter filter = PixelFilter::Box;
     SamplerKind sampler = SamplerKind::Sobol;
+    Integrator integrator = Integrator::Path;
     bool nextEventEstimation = true;
     LightChoice lights = LightChoice::Adaptive;
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
