@@ -74,7 +74,7 @@ uint traversalStack[STACK_SIZE];
 int traversalTop;
 /** Whether entries are moved rather than addressed. Few stay in registers; lavapipe writes to an address lane
  * by lane, with branches that it mispredicts. */
-const bool MOVE_STACK = STACK_SIZE <= 12;
+const bool MOVE_STACK = STACK_SIZE <= 16;
 
 void clearStack() {
     traversalTop = 0;
