@@ -23,6 +23,8 @@ import malformed
 
 ALLOWANCE = 256 << 20
 TIMEOUT = 20
+# Faults that have no place but the file.
+WHOLE_FILE = ("is empty", "is no scene that can be read", "its JSON is no object", "out of range")
 
 parser = argparse.ArgumentParser()
 parser.add_argument("build")
@@ -60,6 +62,8 @@ def faults_of_refusal(ended, file):
     faults = []
     if name not in (file, "scene.mtl"):
         faults.append("names no file: " + lines[0][:300])
+    if ": " not in rest.split("; ")[0] and not any(part in rest for part in WHOLE_FILE):
+        faults.append("names no place: " + lines[0][:300])
     if "; " not in rest:
         faults.append("names no remedy: " + lines[0][:300])
     return faults

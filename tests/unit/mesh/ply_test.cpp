@@ -79,7 +79,7 @@ TEST_F(MeshFile, PlyPolygonsStripsAndOtherElements) {
                           std::string("element face 1\nproperty list uchar int vertex_indices\n"
                                       "element vertex 6\nproperty float x\nproperty float y\n"
                                       "property float z\nend_header\n"
-                                      "3 1 2 3\n0\n6 0 1 2 3 4 5\n"
+                                      "3 1 2 3\n0\n6 4 5 0 1 2 3\n"
                                       "1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n2 1 0\n"));
     EXPECT_EQ(scene.triangleCount(), 4u);
     EXPECT_NEAR(areaOf(scene.meshes[0].primitives.at(0)), 3, 1e-6) << "an L of three unit squares";
