@@ -53,7 +53,8 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       view_(std::make_shared<RasterView>(view)),
       raster_(device, {.cullBackFaces = options.cullBackFaces}),
       shadows_(options.shadows),
-      shade_(device, scene.deviceScene, scene.bounds, options.shadows) {
+      filter_(options.textureFilter),
+      shade_(device, scene.deviceScene, scene.bounds, options.shadows, options.textureFilter) {
     makeMips(device);
     makeShadows(device);
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
@@ -65,7 +66,8 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
 bool RasterSession::fits(const RasterView& view, const RenderOptions& options) const {
     return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
            options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
-           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
+           options.textureFilter == filter_ && options.shadows.kind == shadows_.kind &&
+           options.shadows.resolution == shadows_.resolution &&
            options.shadows.filterRadius == shadows_.filterRadius &&
            options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
 }

@@ -49,6 +49,7 @@ private:
     std::shared_ptr<RasterView> view_;
     RasterPipeline raster_;
     Shadows shadows_;
+    TextureFilter filter_;
     ShadePipeline shade_;
     /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;

@@ -26,9 +26,11 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene)
     : ShadePipeline(device, scene, {}, {.kind = Shadows::Kind::None}) {}
 
 ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds,
-                             const Shadows& shadows)
+                             const Shadows& shadows, TextureFilter filter)
     : scene_(scene),
-      mips_(device, scene.info().textures),
+      filter_(scene.info().textures.empty() ? TextureFilter::Bilinear : filter),
+      mips_(device, filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
+                                                        : std::span<const glm::uvec4>()),
       shadowKind_(shadows.kind),
       shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
       environment_(
@@ -80,7 +82,9 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     common.spec = scene_.constants({"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_EMISSION",
                                     "HAS_EMISSION_TEXTURES", "HAS_FLOAT_TEXTURES", "HAS_AREA_LIGHTS",
                                     "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
-    common.spec["FILTER_MIPS"] = mips_.needed();
+    // Without any mip level the trilinear filter is the bilinear.
+    const bool bilinear = filter_ == TextureFilter::Trilinear && !mips_.needed();
+    common.spec["TEXTURE_FILTER"] = std::int32_t(bilinear ? TextureFilter::Bilinear : filter_);
     common.spec["SCENE_ORDER"] = sceneOrder;
     common.spec["ORTHOGRAPHIC"] = view.orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);

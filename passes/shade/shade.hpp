@@ -45,7 +45,8 @@ public:
     /** Without shadows. */
     ShadePipeline(Device& device, DeviceScene& scene);
     /** `bounds` are the scene's. */
-    ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows);
+    ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows,
+                  TextureFilter filter = TextureFilter::Trilinear);
 
     /** The levels that shading samples; run their passes once before (MipChains::needed, declareMips). */
     MipChains& mips() { return mips_; }
@@ -75,6 +76,7 @@ private:
     void bindScene(Graph& graph, Pass& pass, const Common& common);
 
     DeviceScene& scene_;
+    TextureFilter filter_;
     MipChains mips_;
     Shadows::Kind shadowKind_;
     ShadowMaps shadows_;

@@ -125,10 +125,9 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
-        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size"}) {
+        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter"}) {
             if (command.count(option) > 0) {
-                throw CLI::ValidationError(option,
-                                           "is there for --pipeline raster only: paths find shadows by rays");
+                throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
         }
         if (command.count("--aa") > 0) {
@@ -357,6 +356,17 @@ void addRenderCommand(CLI::App& app, Command& run) {
         "--aa", arguments->antialiasing,
         "Antialiasing of the raster pipeline: none (default), fxaa, msaa2, msaa4, msaa8, msaa16, or "
         "each sample shaded: ssaaN, gridN, jitterN (N x N), randomN");
+    addChoice<TextureFilter>(
+        command, "--texture-filter", options.textureFilter,
+        {{"nearest", TextureFilter::Nearest},
+         {"bilinear", TextureFilter::Bilinear},
+         {"bicubic", TextureFilter::CatmullRom},
+         {"bspline", TextureFilter::BSpline},
+         {"trilinear", TextureFilter::Trilinear},
+         {"anisotropic", TextureFilter::Anisotropic},
+         {"ewa", TextureFilter::Ewa}},
+        "Of the raster pipeline: nearest, bilinear, bicubic, bspline, trilinear (default), "
+        "anisotropic, ewa");
     addChoice<Shadows::Kind>(
         command, "--shadows", options.shadows.kind,
         {{"none", Shadows::Kind::None},

@@ -7,9 +7,8 @@
 #include "shaders/raster/surface.glsl"
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
-#include "shaders/texture/trilinear.glsl"
+#include "shaders/texture/filters.glsl"
 
-layout(constant_id = 120) const bool FILTER_MIPS = true;    ///< some texture has mip levels
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
 layout(set = 0, binding = 1) uniform usamplerBuffer uSlots;         ///< place of a triangle by its id
@@ -28,7 +27,7 @@ vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
     vec2 atX = vec2(dot(u.xy, px), dot(v.xy, px)), atY = vec2(dot(u.xy, py), dot(v.xy, py));
     vec4 value = vec4(1.0);
     if (int(first.w) >= 0)
-        value = FILTER_MIPS ? sampleTrilinear(int(first.w), at, atX, atY) : sampleTexture(int(first.w), at);
+        value = sampleFiltered(int(first.w), at, atX, atY);
     return value;
 }
 

@@ -78,6 +78,18 @@ struct Shadows {
     float lightSize = 0.05f;  ///< radius in scene units; of a directional light the tangent of its half angle
 };
 
+/** How the raster pipeline filters textures over a pixel, in full floats. The first four look at the base
+ * level alone. */
+enum class TextureFilter : std::uint8_t {
+    Nearest,
+    Bilinear,
+    CatmullRom,   ///< bicubic through the texels
+    BSpline,      ///< bicubic, smooth
+    Trilinear,    ///< over mip levels
+    Anisotropic,  ///< up to 16 trilinear samples along the footprint
+    Ewa           ///< elliptical weighted average: a Gaussian over the footprint's ellipse
+};
+
 struct RenderOptions {
     std::array<std::uint32_t, 2> size = {1280, 720};  ///< pixels
     Pipeline pipeline = Pipeline::Path;
@@ -97,9 +109,10 @@ struct RenderOptions {
     std::string animation;                   ///< name, index or "none"; empty for the first
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
-    Antialiasing antialiasing;  ///< of the raster pipeline
-    Shadows shadows;            ///< of the raster pipeline
-    bool auxiliary = true;      ///< also albedo, normal, depth, variance, samples, ids
+    Antialiasing antialiasing;                               ///< of the raster pipeline
+    Shadows shadows;                                         ///< of the raster pipeline
+    TextureFilter textureFilter = TextureFilter::Trilinear;  ///< of the raster pipeline
+    bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
      * rarely, so that it takes a twentieth of the time at most), when it is cancelled and when it ends;
      * empty: nowhere. */
