@@ -52,7 +52,7 @@ expect 'unknown command' 2 "there is no command 'bench'; there are render" "$pro
 expect 'unknown options, the first is named' 2 'error: --scheduler is not known here' "$program" render sample:cornell --scheduler wavefront --denoise
 expect 'unknown option before any command' 2 'error: --fast is not known here' "$program" --fast
 expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell --denoise
-expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler halton
+expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler dice
 expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
