@@ -40,7 +40,7 @@ void noteUnused(const RenderOptions& options, RenderResult& result) {
 }  // namespace
 
 PackOptions rasterPackOptions() {
-    return {.tree = false, .sampleSurfaces = true};
+    return {.tree = false, .sampleSurfaces = true, .diffuseEnvironment = true};
 }
 
 RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterView& view,

@@ -76,7 +76,7 @@ glm::vec4 fromBits(std::uint32_t x, std::uint32_t y, float z, float w) {
 
 }  // namespace
 
-void environment(const Scene& scene, PackedScene& packed) {
+void environment(const Scene& scene, const PackOptions& options, PackedScene& packed) {
     if (!scene.environment) return;
     packed.environment = scene.environment->radiance;
     if (scene.environment->image < 0 || packed.environment == glm::vec3(0.0f)) return;
@@ -157,6 +157,7 @@ void environment(const Scene& scene, PackedScene& packed) {
     }
     const AliasTable rows = aliasTable(rowWeight);
     packed.environmentSize = {w, h};
+    if (options.diffuseEnvironment) packed.diffuseEnvironment = diffuseEnvironment(texels, w, h);
     packed.environmentBits = {rows.bits, columnBits};
 
     const glm::mat3 toMap(

@@ -122,7 +122,7 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;
     pack::materials(scene, materialUsed, packed);
-    pack::environment(scene, packed);
+    pack::environment(scene, options, packed);
     pack::lights(scene, positions, surfaces, options, packed);
 
     const std::vector<std::uint32_t> order = accelerate(positions, options, packed);

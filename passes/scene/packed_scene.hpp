@@ -30,6 +30,9 @@ inline constexpr std::uint32_t kLightTexels = 6;
 enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional, Environment };
 /** Texels before the image in PackedScene::environmentMap; shaders/scene/environment.glsl names them. */
 inline constexpr std::uint32_t kEnvironmentHeader = 4;
+/** Steps of PackedScene::diffuseEnvironment round the equator and from pole to pole;
+ * shaders/raster/shading.glsl has them too. */
+inline constexpr std::uint32_t kDiffuseEnvironmentWidth = 64, kDiffuseEnvironmentHeight = 32;
 
 struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
@@ -41,6 +44,8 @@ struct PackOptions {
     bool sampleSurfaces = true;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
     LightChoice lights = LightChoice::Power;
+    /** PackedScene::diffuseEnvironment is made. */
+    bool diffuseEnvironment = false;
     bool operator==(const PackOptions&) const = default;
 };
 
@@ -79,6 +84,9 @@ struct PackedScene {
     std::array<std::uint32_t, 2> environmentSize{0, 0};  ///< texels
     std::array<std::uint32_t, 2> environmentBits{1, 1};  ///< of the tables over rows, and over a row's cells
     bool environmentRotated = false;
+    /** What a white Lambertian surface reflects of the image, by its normal in the image's frame: at column i
+     * and row j that of u = i / width, v = j / height, both poles included. Empty unless asked for. */
+    std::vector<glm::vec4> diffuseEnvironment;
     double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
     std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
     std::uint32_t triangleCount = 0;
@@ -142,7 +150,12 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
             const PackOptions& options, PackedScene& packed);
 
 /** The environment, and where it is an image its texels and tables. Before the lights, of which it is one. */
-void environment(const Scene& scene, PackedScene& packed);
+void environment(const Scene& scene, const PackOptions& options, PackedScene& packed);
+/** PackedScene::diffuseEnvironment of a latitude-longitude image of finite radiances. Ramamoorthi and
+ * Hanrahan, "An efficient representation for irradiance environment maps", 2001, show how smooth it is: the
+ * table's own steps leave about 0.1 % of its range. */
+std::vector<glm::vec4> diffuseEnvironment(std::span<const glm::vec3> texels, std::uint32_t width,
+                                          std::uint32_t height);
 
 /** "WHAT", "WHY" of what materials ask for and kernels do not show, once each; of the materials in use alone.
  */

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <string>
 
 namespace helio {
@@ -18,6 +19,15 @@ constexpr std::uint32_t kLightsPerPass = 8192;
 std::uint32_t shadowedLights(const PackedScene& scene) {
     const bool kept = scene.lights.size() >= std::size_t(scene.lightCount) * kLightTexels;
     return scene.punctualLights && kept ? scene.lightCount : 0;
+}
+
+/** uEnvironment of shaders/raster/shading.glsl. */
+std::vector<glm::vec4> surroundings(const PackedScene& scene) {
+    assert((scene.environmentSize[0] == 0 || !scene.diffuseEnvironment.empty()) &&
+           "pack scenes for shading with PackOptions::diffuseEnvironment");
+    std::vector<glm::vec4> texels{glm::vec4(scene.environment, 0.0f)};
+    texels.insert(texels.end(), scene.diffuseEnvironment.begin(), scene.diffuseEnvironment.end());
+    return texels;
 }
 
 }  // namespace
@@ -33,8 +43,7 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bo
                                                         : std::span<const glm::uvec4>()),
       shadowKind_(shadows.kind),
       shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
-      environment_(
-          makeBuffer(device, "shade.environment", std::array{glm::vec4(scene.info().environment, 0.0f)})),
+      environment_(makeBuffer(device, "shade.environment", surroundings(scene.info()))),
       maxStorageBufferRange_(device.info().maxStorageBufferRange) {}
 
 void ShadePipeline::declareMips(Graph& graph) {
@@ -188,9 +197,6 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }
-    if (scene_.hasEnvironmentImage())
-        result.emplace_back("light of the environment's image",
-                            "the raster pipeline shows it behind the scene only");
     for (const auto& skipped : info.lambertSkipped) result.push_back(skipped);
     if (info.texturedEmission && info.areaLights)
         result.emplace_back("texture of emission over a light",

@@ -16,12 +16,7 @@ void main() {
     ivec2 size = imageSizePixels(), pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
-    // What misses show, and what reaches a white surface from everywhere.
-    vec3 surroundings = HAS_ENVIRONMENT ? texelFetch(uEnvironment, 0).rgb : vec3(0.0), constant = surroundings;
-#ifdef ENVIRONMENT_IMAGE
-    constant = vec3(0.0);
-    surroundings = environmentAt(pixelDirection(pixel)).radiance;
-#endif
+    vec3 surroundings = visibleSurroundings(pixel);
     vec4 sum = vec4(0.0);
     uint count = 0u, pending = 0xffffffffu >> (32 - SAMPLES);
     while (pending != 0u) {
@@ -38,7 +33,7 @@ void main() {
         float share = float(bitCount(same)) / float(SAMPLES);
         Shaded shaded = shadePoint(pixel, key);
         vec3 radiance = reflectedLight(shaded);
-        if (FIRST_LIGHTS) radiance += shaded.emission + shaded.albedo * constant;
+        if (FIRST_LIGHTS) radiance += shaded.emission + shaded.albedo * reflectedSurroundings(shaded.normal);
         vec3 missed = FIRST_LIGHTS ? surroundings : vec3(0.0);
         sum += share * (shaded.hit ? vec4(radiance, 1.0) : vec4(missed, 0.0));
         count += uint(shaded.hit);

@@ -14,17 +14,8 @@ void main() {
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
     Shaded shaded = shadePoint(pixel, visibility[index]);
-    vec3 radiance = shaded.emission + reflectedLight(shaded);
-    vec3 surroundings = vec3(0.0);
-    if (HAS_ENVIRONMENT) {
-        surroundings = texelFetch(uEnvironment, 0).rgb;
-#ifdef ENVIRONMENT_IMAGE
-        surroundings = environmentAt(pixelDirection(pixel)).radiance;
-#else
-        // Constant over the hemisphere: irradiance pi L.
-        radiance += shaded.albedo * surroundings;
-#endif
-    }
+    vec3 radiance = shaded.emission + reflectedLight(shaded) + shaded.albedo * reflectedSurroundings(shaded.normal);
+    vec3 surroundings = visibleSurroundings(pixel);
     color[index] = shaded.hit ? vec4(radiance, 1.0) : vec4(surroundings, 0.0);
     albedoDepth[index] = shaded.hit ? vec4(shaded.albedo, shaded.depth) : vec4(0.0);
     normals[index] = shaded.hit ? vec4(shaded.normal, 0.0) : vec4(0.0);

@@ -13,7 +13,7 @@ layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie i
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
 layout(set = 0, binding = 1) uniform usamplerBuffer uSlots;         ///< place of a triangle by its id
 layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first id of every instance
-layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< one texel: constant radiance of the surroundings
+layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constant radiance of the surroundings; PackedScene::diffuseEnvironment
 
 /// A material's texture at `row` (3 or 5) over the pixel's footprint; white where there is none.
 vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
@@ -128,6 +128,37 @@ vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
         irradiance = kind >= LIGHT_POINT && squared > 0.0 ? value : irradiance;
     }
     return irradiance;
+}
+
+/// What a pixel shows where it shows no surface.
+vec3 visibleSurroundings(ivec2 pixel) {
+    vec3 radiance = vec3(0.0);
+#ifdef ENVIRONMENT_IMAGE
+    radiance = environmentAt(pixelDirection(pixel)).radiance;
+#else
+    if (HAS_ENVIRONMENT) radiance = texelFetch(uEnvironment, 0).rgb;
+#endif
+    return radiance;
+}
+
+/// Radiance that a white Lambertian surface reflects of surroundings that nothing hides.
+vec3 reflectedSurroundings(vec3 normal) {
+    vec3 radiance = vec3(0.0);
+#ifdef ENVIRONMENT_IMAGE
+    const int WIDTH = 64, HEIGHT = 32;  // kDiffuseEnvironment...
+    vec3 q = toEnvironment(normal);
+    float x = (0.5 - realAtan2(q.x, q.z) * INV_TWO_PI) * float(WIDTH);
+    float y = realAtan2(length(q.xz), q.y) * INV_PI * float(HEIGHT);
+    int left = clamp(int(x), 0, WIDTH - 1), top = clamp(int(y), 0, HEIGHT - 1);
+    int right = left + 1 == WIDTH ? 0 : left + 1, row = 1 + top * WIDTH;
+    float s = x - float(left), t = y - float(top);
+    radiance = mix(mix(texelFetch(uEnvironment, row + left).rgb, texelFetch(uEnvironment, row + right).rgb, s),
+                   mix(texelFetch(uEnvironment, row + WIDTH + left).rgb,
+                       texelFetch(uEnvironment, row + WIDTH + right).rgb, s), t);
+#else
+    if (HAS_ENVIRONMENT) radiance = texelFetch(uEnvironment, 0).rgb;  // over the hemisphere: irradiance pi L
+#endif
+    return radiance;
 }
 
 /// Radiance that a Lambertian surface reflects of the lights push.first to push.first + push.count - 1.

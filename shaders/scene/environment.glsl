@@ -57,12 +57,18 @@ EnvironmentRadiance environmentBlend(vec4 a, vec4 b, vec4 c, vec4 d, float s, fl
     return EnvironmentRadiance(upper.rgb + (lower.rgb - upper.rgb) * t, max(upper.w + (lower.w - upper.w) * area, 0.0));
 }
 
-/** What comes from a unit direction. */
-EnvironmentRadiance environmentAt(vec3 direction) {
+/** A direction of the world in the image's frame. */
+vec3 toEnvironment(vec3 direction) {
     vec3 q = direction;
     if (ENVIRONMENT_ROTATED)
         q = vec3(dot(texelFetch(uEnvironmentMap, 1).xyz, direction), dot(texelFetch(uEnvironmentMap, 2).xyz, direction),
                  dot(texelFetch(uEnvironmentMap, 3).xyz, direction));
+    return q;
+}
+
+/** What comes from a unit direction. */
+EnvironmentRadiance environmentAt(vec3 direction) {
+    const vec3 q = toEnvironment(direction);
     const float x = (0.5 - realAtan2(q.x, q.z) * INV_TWO_PI) * float(ENVIRONMENT_WIDTH) - 0.5;
     const float left = floor(x);
     const int column = left < 0.0 ? ENVIRONMENT_WIDTH - 1 : min(int(left), ENVIRONMENT_WIDTH - 1);
