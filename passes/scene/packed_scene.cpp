@@ -26,12 +26,12 @@ glm::vec4 withBits(const glm::vec3& v, std::uint32_t bits) {
 /** What the pictures lack for the materials in use: of all pipelines, and of those that take every surface
  * for Lambertian. */
 struct NotShown {
-    std::set<std::pair<std::string, std::string>> anywhere, byLambert;
+    std::set<std::pair<std::string, std::string>> anywhere, byRaster;
 };
 NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& materialUsed) {
     NotShown result;
     auto& named = result.anywhere;
-    auto& lambert = result.byLambert;
+    auto& raster = result.byRaster;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (!materialUsed[i]) continue;
         const Material& m = scene.materials[i];
@@ -39,26 +39,21 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
         if (m.thicknessTexture) named.emplace("thickness textures", "thickness is that of the surfaces");
         if (pack::namesTooManySets(m))
             named.emplace("third texture coordinate sets", "a material's textures read two sets at most");
-        const auto skipIf = [&](bool isAsked, const char* what) {
-            if (isAsked) lambert.emplace(what, "surfaces scatter as Lambert with their base colour");
-        };
         const std::uint32_t features = pack::materialFeatures(m);
-        const auto has = [&](std::uint32_t bits) { return (features & bits) != 0; };
+        const auto skipIf = [&](bool isAsked, const char* what, const char* why) {
+            if (isAsked) raster.emplace(what, why);
+        };
         using namespace pack;
-        skipIf(has(kSpecularFeature), "specular reflection");
-        skipIf(has(kMetallicTextureFeature | kSpecularTextureFeature),
-               "metallic, roughness and specular textures");
-        if (has(kNormalMapFeature)) lambert.emplace("normal maps", "vertex normals are used");
-        if (has(kAlphaFeature)) lambert.emplace("alpha masks and blending", "surfaces are opaque");
-        skipIf(m.unlit, "unlit materials");
-        skipIf(has(kTransmissionFeature), "transmission");
-        skipIf(m.thickness > 0.0f, "volumes");
-        skipIf(has(kDispersionFeature), "dispersion");
-        skipIf(has(kClearcoatFeature), "clearcoat");
-        skipIf(has(kSheenFeature), "sheen");
-        skipIf(has(kAnisotropyFeature), "anisotropy");
-        skipIf(has(kIridescenceFeature), "iridescence");
-        skipIf(m.scattering.has_value(), "scattering models");
+        const bool shines = (features & (kSpecularFeature | ~(kFirstModelFeature - 1u))) != 0;
+        skipIf(shines, "gloss of area lights",
+               "the raster pipeline shades gloss of punctual lights; surroundings "
+               "are reflected as their mean");
+        skipIf((features & kAlphaFeature) != 0, "alpha masks and blending",
+               "the raster pipeline draws every surface as opaque");
+        const bool through = m.scattering && (m.scattering->model == Scattering::Model::Dielectric ||
+                                              m.scattering->model == Scattering::Model::ThinDielectric);
+        skipIf((features & kTransmissionFeature) != 0 || through, "transmission",
+               "the raster pipeline shows no light that goes through surfaces");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
     return result;
@@ -134,7 +129,7 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     }
     const NotShown absent = materialsNotShown(scene, materialUsed);
     packed.skipped.assign(absent.anywhere.begin(), absent.anywhere.end());
-    packed.lambertSkipped.assign(absent.byLambert.begin(), absent.byLambert.end());
+    packed.rasterSkipped.assign(absent.byRaster.begin(), absent.byRaster.end());
     return packed;
 }
 

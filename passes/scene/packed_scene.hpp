@@ -115,8 +115,8 @@ struct PackedScene {
     bool doubleSidedEmission = false;
     /** "WHAT", "WHY" of everything in the scene that no kernel shows (yet). */
     std::vector<std::pair<std::string, std::string>> skipped;
-    /** What kernels that take every surface for Lambertian leave out besides. */
-    std::vector<std::pair<std::string, std::string>> lambertSkipped;
+    /** What the raster pipeline leaves out besides. */
+    std::vector<std::pair<std::string, std::string>> rasterSkipped;
     std::vector<std::string> warnings;  ///< what of the scene is not shown as it is given
     double treeSeconds = 0;             ///< time to build the tree
 

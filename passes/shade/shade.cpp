@@ -2,11 +2,13 @@
 
 #include "passes/raster/push.hpp"
 
+#include <fmt/format.h>
 #include <heliograph_kernels/shade.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <map>
 #include <string>
 
 namespace helio {
@@ -62,10 +64,13 @@ struct ShadePipeline::Common {
     SpecConstants spec, firstSpec;
     std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
     bool hasImage = false;
-    /** The kernel that shows the surroundings. */
-    Kernel kernel(const Kernel& plain) const {
-        if (!hasImage) return plain;
-        return compileVariant(plain, {.defines = {{"ENVIRONMENT_IMAGE", "1"}}, .generated = {}});
+    std::map<std::string, std::string> materials;  ///< definitions for more than diffuse surfaces
+    /** A kernel for these materials; the one that shows the surroundings where there is an image of them. */
+    Kernel kernel(const Kernel& plain, bool surroundingsToo = true) const {
+        std::map<std::string, std::string> defines = materials;
+        if (hasImage && surroundingsToo) defines["ENVIRONMENT_IMAGE"] = "1";
+        if (defines.empty()) return plain;
+        return compileVariant(plain, {.defines = defines, .generated = {}});
     }
 };
 
@@ -91,6 +96,10 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     common.spec = scene_.constants({"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_EMISSION",
                                     "HAS_EMISSION_TEXTURES", "HAS_FLOAT_TEXTURES", "HAS_AREA_LIGHTS",
                                     "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
+    if (scene_.info().materialFeatures != 0) {
+        common.materials["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
+        common.spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_LINEAR_TEXTURES"}));
+    }
     // Without any mip level the trilinear filter is the bilinear.
     const bool bilinear = filter_ == TextureFilter::Trilinear && !mips_.needed();
     common.spec["TEXTURE_FILTER"] = std::int32_t(bilinear ? TextureFilter::Bilinear : filter_);
@@ -111,6 +120,7 @@ void ShadePipeline::bindScene(Graph& graph, Pass& pass, const Common& common) {
         .reads(mips_.bindings(graph))
         .reads(shadows_.bindings(graph))
         .reads({{"uSlots", common.slots, Format::R32UI}});
+    if (!common.materials.empty()) pass.reads(scene_.bindings(graph, {"uTangents"}));
 }
 
 ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
@@ -128,7 +138,8 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
         Pass pass = first == 0 ? graph.compute("shade.surface", common.kernel(shaders::shadeSurface),
                                                {.spec = common.firstSpec})
-                               : graph.compute("shade.lights", shaders::shadeLights, {.spec = common.spec});
+                               : graph.compute("shade.lights", common.kernel(shaders::shadeLights, false),
+                                               {.spec = common.spec});
         bindScene(graph, pass, common);
         pass.reads({{"uVisibility", raster.visibility}}).record([view, first, count](Commands& c) {
             c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
@@ -197,7 +208,7 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }
-    for (const auto& skipped : info.lambertSkipped) result.push_back(skipped);
+    for (const auto& skipped : info.rasterSkipped) result.push_back(skipped);
     if (info.texturedEmission && info.areaLights)
         result.emplace_back("texture of emission over a light",
                             "the raster pipeline takes its mean over each triangle");

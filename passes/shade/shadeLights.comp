@@ -1,6 +1,7 @@
 // Adds the light of further rows of the table to a shaded image: no loop over lights gets longer than drivers bear.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/raster/shading.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -2,6 +2,7 @@
 // weighted by its share of the samples.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/raster/shading.glsl"
 
 layout(constant_id = 123) const int SAMPLES = 4;      ///< at most 32
@@ -33,7 +34,7 @@ void main() {
         float share = float(bitCount(same)) / float(SAMPLES);
         Shaded shaded = shadePoint(pixel, key);
         vec3 radiance = reflectedLight(shaded);
-        if (FIRST_LIGHTS) radiance += shaded.emission + shaded.albedo * reflectedSurroundings(shaded.normal);
+        if (FIRST_LIGHTS) radiance += shaded.emission + (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
         vec3 missed = FIRST_LIGHTS ? surroundings : vec3(0.0);
         sum += share * (shaded.hit ? vec4(radiance, 1.0) : vec4(missed, 0.0));
         count += uint(shaded.hit);

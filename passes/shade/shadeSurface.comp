@@ -1,6 +1,7 @@
 // Colour and guide channels of every pixel of a visibility buffer, under the first lights of the table.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/raster/shading.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -14,7 +15,7 @@ void main() {
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
     Shaded shaded = shadePoint(pixel, visibility[index]);
-    vec3 radiance = shaded.emission + reflectedLight(shaded) + shaded.albedo * reflectedSurroundings(shaded.normal);
+    vec3 radiance = shaded.emission + reflectedLight(shaded) + (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
     vec3 surroundings = visibleSurroundings(pixel);
     color[index] = shaded.hit ? vec4(radiance, 1.0) : vec4(surroundings, 0.0);
     albedoDepth[index] = shaded.hit ? vec4(shaded.albedo, shaded.depth) : vec4(0.0);

@@ -8,6 +8,9 @@
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
 #include "shaders/texture/filters.glsl"
+#ifdef SURFACE_MATERIALS
+#include "shaders/raster/material_light.glsl"
+#endif
 
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
@@ -42,6 +45,12 @@ struct Shaded {
     int g;
     int instance;
     int triangle;   // within the instance
+    vec3 diffuse;   // of light from many directions
+    vec3 mirror;    // of the surroundings, as a smooth surface reflects them
+#ifdef SURFACE_MATERIALS
+    SurfaceBsdf bsdf;
+    SurfacePoint point;
+#endif
 };
 
 /// Everything that light does not change of what a visibility key shows at a pixel's centre.
@@ -76,6 +85,15 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     vec3 normal = shadingNormal(g, surface.b, surface.faceNormal);
     shaded.normal = surface.front ? normal : -normal;
     shaded.albedo = base.rgb;
+    shaded.diffuse = base.rgb;
+    shaded.mirror = vec3(0.0);
+#ifdef SURFACE_MATERIALS
+    shaded.point = rasterPoint(source, surface, shaded.normal);
+    shaded.bsdf = rasterBsdf(source, surface, shaded.normal, base.rgb);
+    shaded.diffuse = base.rgb * diffuseShare(shaded.bsdf);
+    shaded.mirror = mirrorShare(shaded.bsdf);
+    shaded.emission += shaded.hit ? ownLight(shaded.bsdf) : vec3(0.0);
+#endif
     shaded.faceNormal = surface.faceNormal;
     shaded.g = g;
     shaded.position = surface.position;
@@ -85,8 +103,10 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     return shaded;
 }
 
-/// Unoccluded irradiance of one light of the table on a surface: exact for a uniform polygon.
-vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
+/// Unoccluded irradiance of one light of the table on a surface: exact for a uniform polygon. Of a punctual light it is
+/// that across `direction`, which is 0 for others.
+vec3 lightIrradiance(int light, vec3 position, vec3 normal, out vec3 direction) {
+    direction = vec3(0.0);
     int first = light * LIGHT_TEXELS;
     dvec3 eye = dvec3(push.rowX.w, push.rowY.w, push.rowW.w);
     vec3 corner = vec3(dvec3(uintBitsToFloat(texelFetch(uLights, first).xyz)) - eye) - position;
@@ -117,15 +137,16 @@ vec3 lightIrradiance(int light, vec3 position, vec3 normal) {
         bool directional = kind == LIGHT_DIRECTIONAL;
         vec3 toLight = directional ? -facing.xyz : corner;
         float squared = dot(toLight, toLight);
-        vec3 direction = toLight * inversesqrt(max(squared, 1e-37));
+        vec3 unit = toLight * inversesqrt(max(squared, 1e-37));
         float attenuation = directional ? 1.0 : 1.0 / max(squared, 1e-37);
-        float cone = clamp(-dot(facing.xyz, direction) * edge2.x + edge2.y, 0.0, 1.0);
+        float cone = clamp(-dot(facing.xyz, unit) * edge2.x + edge2.y, 0.0, 1.0);
         attenuation *= kind == LIGHT_SPOT ? cone * cone : 1.0;
         // KHR_lights_punctual's window, 0 beyond the range.
         float ratio = squared / (edge2.z * edge2.z);
         attenuation *= !directional && edge2.z > 0.0 ? clamp(1.0 - ratio * ratio, 0.0, 1.0) : 1.0;
-        vec3 value = strength.rgb * (attenuation * max(dot(normal, direction), 0.0));
-        irradiance = kind >= LIGHT_POINT && squared > 0.0 ? value : irradiance;
+        bool shines = kind >= LIGHT_POINT && squared > 0.0;
+        irradiance = shines ? strength.rgb * attenuation : irradiance;
+        direction = shines ? unit : direction;
     }
     return irradiance;
 }
@@ -161,17 +182,24 @@ vec3 reflectedSurroundings(vec3 normal) {
     return radiance;
 }
 
-/// Radiance that a Lambertian surface reflects of the lights push.first to push.first + push.count - 1.
+/// Radiance that a surface reflects of the lights push.first to push.first + push.count - 1.
 vec3 reflectedLight(Shaded shaded) {
-    vec3 irradiance = vec3(0.0);
+    vec3 irradiance = vec3(0.0), gloss = vec3(0.0);
     if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
         for (uint light = push.first; light < push.first + push.count; ++light) {
-            vec3 arriving = lightIrradiance(int(light), shaded.position, shaded.normal);
+            vec3 direction;
+            vec3 arriving = lightIrradiance(int(light), shaded.position, shaded.normal, direction);
             if (SHADOWS != SHADOWS_NONE)
                 arriving *= lightVisibility(int(light), shaded.position, shaded.faceNormal, shaded.g);
-            irradiance += arriving;
+            bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
+#ifdef SURFACE_MATERIALS
+            if (HAS_PUNCTUAL_LIGHTS && punctual) gloss += arriving * valueTowards(shaded.bsdf, shaded.point, direction);
+            irradiance += punctual ? vec3(0.0) : arriving;
+#else
+            irradiance += arriving * (punctual ? max(dot(shaded.normal, direction), 0.0) : 1.0);
+#endif
         }
-    return shaded.albedo * (INV_PI * irradiance);
+    return shaded.diffuse * (INV_PI * irradiance) + gloss;
 }
 
 #endif
