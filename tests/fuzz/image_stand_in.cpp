@@ -14,6 +14,9 @@ public:
         image.texels = std::vector<std::uint8_t>(4, 255);
         return {};
     }
+    std::string decodeFile(const std::filesystem::path&, DecodedImage&) const override {
+        return "is not decoded here";
+    }
     std::string encodeExr(const ImageF&, std::vector<std::byte>&) const override {
         return "is not written here";
     }
