@@ -29,7 +29,6 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"depth limit", std::to_string(options.maxDepth)},
             {"pixel filter", std::to_string(int(options.filter))},
             {"integrator", std::to_string(int(options.integrator))},
-            {"accelerator", std::to_string(int(options.accelerator))},
             {"sampler", std::to_string(int(options.sampler))},
             {"accelerator", std::to_string(int(options.accelerator))},
             {"choice of lights", std::to_string(int(options.lights))},

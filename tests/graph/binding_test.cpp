@@ -253,6 +253,21 @@ TEST(Bindings, ImportedImageKeepsItsTexels) {
     for (int i = 0; i < 5; ++i) run = plan.execute();
     const Values read = result.wait(run);
     for (std::uint32_t i = 0; i < 64; ++i) EXPECT_EQ(read[i], 5 * i);
+
+    // Nothing but copies: their layout changes must wait for what another plan wrote.
+    DeviceImage other(device(), "other", 8, 8, Format::R32UI);
+    Graph writer(device());
+    for (const Image c : {writer.import(image), writer.import(other)})
+        writer.compute("add", add).modifies({{"uImage", c}}).record([=](Commands& r) { r.dispatchOver(c); });
+    Plan writing = writer.compile();
+    Graph reader(device());
+    auto first = reader.readback<std::uint32_t>(reader.import(image));
+    auto second = reader.readback<std::uint32_t>(reader.import(other));
+    Plan reading = reader.compile();
+    writing.execute();
+    const Execution read2 = reading.execute();
+    EXPECT_EQ(first.wait(read2)[63], 6u * 63);
+    EXPECT_EQ(second.wait(read2)[63], 63u);
 }
 
 TEST(Bindings, SpecializationConstantsByNameAndLocalSize) {
