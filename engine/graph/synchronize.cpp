@@ -150,7 +150,10 @@ private:
             // An imported resource not yet touched in this execution: the opening barrier has done it all.
             if (barrier.fromStages == stage::None) {
                 if (!relayout) return;
-                barrier.fromStages = barrier.toStages;
+                // A change of layout writes: it names the earlier executions' accesses itself, for the
+                // synchronization validation chains the opening barrier to reads and writes of steps only.
+                barrier.fromStages = stage::All;
+                barrier.fromAccess = access::AllWrites;
             }
             if (relayout) {
                 state.everythingVisible = false;

@@ -42,19 +42,8 @@ Checkpointing::Checkpointing(Device& device, PathTracer& tracer, Film& film, con
     if (job.options.checkpoint.empty()) return;
     settings_ = checkpointSettings(job.options, scene, view, device.info());
     Graph graph(device);
-    const std::uint64_t pixels = std::uint64_t(film.width()) * film.height();
-    const auto keep = [&](const char* name, Image from, std::uint64_t texels, std::uint32_t width,
-                          std::uint32_t height) {
-        const Buffer saved = graph.buffer(name, {texels * 16});
-        graph.compute(name, shaders::imageSave)
-            .reads({{"uImage", from}})
-            .overwrites({{"uSaved", saved}})
-            .record([width, height](Commands& c) { c.dispatchOver(width, height); });
-        return graph.readback<float>(saved);
-    };
-    readFilm_ = keep("checkpoint.film", film.import(graph), pixels * 6, film.width() * 2, film.height() * 3);
-    readState_ =
-        keep("checkpoint.state", tracer.importState(graph), pixels * 8, film.width() * 4, film.height() * 2);
+    readFilm_ = graph.readback<float>(film.import(graph));
+    readState_ = graph.readback<float>(tracer_.importState(graph));
     reading_ = graph.compile({.executionsInFlight = 1});
 }
 
