@@ -18,7 +18,7 @@ build() {  # build FOLDER cmake-arguments...
 echo "== Release build"
 build build -DCMAKE_BUILD_TYPE=Release -DHELIOGRAPH_WERROR=ON
 echo "== Sanitizer build of the host tests"
-build build-sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DHELIOGRAPH_SANITIZE=address,undefined -DHELIOGRAPH_SAMPLES=OFF -DHELIOGRAPH_HOST_TESTS_ONLY=ON
+build build-sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O1 -DCMAKE_CXX_FLAGS_DEBUG=-g1 -DHELIOGRAPH_SANITIZE=address,undefined -DHELIOGRAPH_SAMPLES=OFF -DHELIOGRAPH_HOST_TESTS_ONLY=ON
 
 status=0
 export ASAN_OPTIONS=detect_leaks=1:${ASAN_OPTIONS:-} UBSAN_OPTIONS=print_stacktrace=1

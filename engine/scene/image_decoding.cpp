@@ -10,7 +10,10 @@ namespace helio {
 
 std::vector<DecodingResult> decodeImages(const std::vector<EncodedImage>& images, LoadMonitor& monitor) {
     std::vector<DecodingResult> results(images.size());
-    if (!images.empty()) imageBackend();  // its own failure is not an image's
+    if (!images.empty()) {
+        imageBackend();  // its own failure is not an image's
+        monitor.report("images", 0);
+    }
     std::atomic<std::size_t> next{0};
     std::atomic<bool> isStopped{false};
     const auto decode = [&](std::size_t i) {

@@ -229,6 +229,13 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     }
     noteCounters(tracer.counters(), result);
     for (const auto& skipped : tracer.skipped()) result.skipped.push_back(skipped);
+    const PackedScene& info = scene.deviceScene.info();
+    if (job.options.integrator == Integrator::Whitted && info.environmentSize[0] == 0 &&
+        info.environment != glm::vec3(0.0f)) {
+        result.skipped.emplace_back(
+            "constant environment on rough surfaces",
+            "--integrator whitted samples lights, and a constant environment is none");
+    }
     job.addTimings(target.timings());
     job.addTimings(timingsSince(compiling, tracer.timings()));
 }

@@ -75,7 +75,8 @@ bool RasterSession::fits(const RasterView& view, const RenderOptions& options) c
 void RasterSession::makeShadows(Device& device) {
     if (!shade_.shadows().needed()) return;
     Graph graph(device);
-    shade_.shadows().declare(graph, raster_, shade_.triangles(graph));
+    const RasterPipeline casters(device, {.cullBackFaces = false});  // light meets back faces too
+    shade_.shadows().declare(graph, casters, shade_.triangles(graph));
     Plan plan = graph.compile();
     plan.wait(plan.execute());
 }

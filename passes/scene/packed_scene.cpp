@@ -54,6 +54,11 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
                                               m.scattering->model == Scattering::Model::ThinDielectric);
         skipIf((features & kTransmissionFeature) != 0 || through, "transmission",
                "the raster pipeline shows no light that goes through surfaces");
+        const std::size_t filtered = std::size_t(bool(m.baseColorTexture)) +
+                                     std::size_t(m.emissiveTexture && m.emission != glm::vec3(0.0f));
+        skipIf(sampledTextures(m).size() > filtered, "filters of material textures",
+               "the raster pipeline filters base colour and emission; other textures are bilinear at their "
+               "base level");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
     return result;

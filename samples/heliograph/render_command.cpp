@@ -134,10 +134,27 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
             throw CLI::ValidationError("--aa",
                                        "is there for --pipeline raster only; paths have --spp and --filter");
         }
+        const bool isLocal = options.integrator == Integrator::AmbientOcclusion ||
+                             options.integrator == Integrator::Hemisphere;
+        if (isLocal && command.count("--lights") > 0) {
+            throw CLI::ValidationError("--lights", "is there for integrators that choose among lights");
+        }
+        if (options.integrator == Integrator::AmbientOcclusion && command.count("--environment") > 0) {
+            throw CLI::ValidationError("--environment", "has no effect on --integrator ao; leave it out");
+        }
+        if (options.integrator == Integrator::Whitted && !options.nextEventEstimation) {
+            throw CLI::ValidationError("--no-nee", "leaves --integrator whitted without direct light");
+        }
         if (options.cullBackFaces) {
             throw CLI::ValidationError("--cull", "back is there for --pipeline raster only, so far");
         }
         return;
+    }
+    if (command.count("--light-size") > 0 && options.shadows.kind != Shadows::Kind::Soft) {
+        throw CLI::ValidationError("--light-size", "is there for --shadows pcss only");
+    }
+    if (command.count("--shadow-resolution") > 0 && options.shadows.kind == Shadows::Kind::None) {
+        throw CLI::ValidationError("--shadow-resolution", "has no effect on --shadows none; leave it out");
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
@@ -205,6 +222,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     for (const std::string& output : {arguments.stats, arguments.graph}) {
         if (!output.empty()) checkTextOutput(output);
     }
+    if (!options.checkpoint.empty()) checkTextOutput(options.checkpoint.string());
 
     // Only EXR files hold more than the picture: without one, the pass of first hits is not even compiled.
     options.auxiliary = std::ranges::any_of(arguments.outputs, holdsEveryChannel);

@@ -53,6 +53,11 @@ expect 'unknown options, the first is named' 2 'error: --scheduler is not known 
 expect 'unknown option before any command' 2 'error: --fast is not known here' "$program" --fast
 expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell --denoise
 expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler dice
+expect 'ao refuses an environment' 2 'environment: has no effect' "$program" render sample:cornell --integrator ao --environment 1,1,1
+expect 'hemisphere refuses a choice of lights' 2 'lights: is there for integrators' "$program" render sample:cornell --integrator hemisphere --lights power
+expect 'whitted refuses --no-nee' 2 'no-nee: leaves' "$program" render sample:cornell --integrator whitted --no-nee
+expect 'a size of lights without pcss is refused' 2 'light-size: is there for' "$program" render sample:cornell --pipeline raster --light-size 1
+expect 'a checkpoint in no folder is refused before rendering' 1 'no-such-folder' "$program" render sample:cornell --checkpoint no-such-folder/x
 expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
@@ -175,8 +180,8 @@ echo 'f 1 2 3' >>large.obj
 for command in info render; do
     "$program" $command large.obj >out.txt 2>err.txt &
     child=$!
-    sleep 0.3
-    kill -INT $child
+    # Again and again: until the program listens, a shell's background job takes no notice of it.
+    while kill -INT $child 2>/dev/null; do sleep 0.02; done
     wait $child
     check "Ctrl-C while $command loads exits 130" test $? -eq 130
     check "Ctrl-C while $command loads says so" grep -q interrupted err.txt

@@ -3,7 +3,7 @@
 # as many at once as there are cores. Ends at the first crash, hang (10 s) or 1 GiB of memory, and keeps the
 # input in the build folder.
 #   tests/fuzz/run.sh [MINUTES] [TARGET...]      MINUTES may be a fraction; 30 without
-#   FUZZ_BUILD=FOLDER (build-fuzz), FUZZ_JOBS=N (cores)
+#   FUZZ_BUILD=FOLDER (build-fuzz), FUZZ_JOBS=N (cores), FUZZ_SEED=N (0: another one each time)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 fail() { printf 'heliograph: error: %s\n' "$*" >&2; exit 1; }
@@ -26,7 +26,7 @@ python3 tests/fuzz/seeds.py "$build/seeds"
 run() {  # run TARGET
     local name=$1 folder=$build/corpus/$1
     mkdir -p "$folder" "$build/found"
-    if "$build/fuzz_$name" "$folder" "$build/seeds/$name" -dict="$build/seeds/$name.dict" \
+    if "$build/fuzz_$name" "$folder" "$build/seeds/$name" -dict="$build/seeds/$name.dict" -seed="${FUZZ_SEED:-0}" \
         -max_total_time="$seconds" -max_len=16384 -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 \
         -artifact_prefix="$build/found/$name-" -print_final_stats=1 -print_funcs=0 >"$build/$name.log" 2>&1; then
         printf '%-6s clean, %s inputs in %s s\n' "$name" \

@@ -12,8 +12,8 @@ namespace {
 class GltfAssets : public testing::Test {
 protected:
     void SetUp() override {
-        if (!fs::exists(HELIOGRAPH_SHARED_DIR))
-            GTEST_SKIP() << "left out: there is no " HELIOGRAPH_SHARED_DIR;
+        if (!fs::exists(HELIOGRAPH_SHARED_DIR "/assets"))
+            GTEST_SKIP() << "left out: there is no " HELIOGRAPH_SHARED_DIR "/assets";
     }
     /** Loads an asset; a missing one is load()'s refusal, which fails the test. */
     static Scene load(const std::string& name) {
