@@ -180,7 +180,9 @@ echo 'f 1 2 3' >>large.obj
 for command in info render; do
     "$program" $command large.obj >out.txt 2>err.txt &
     child=$!
-    # Again and again: until the program listens, a shell's background job takes no notice of it.
+    # Again and again: until the program listens, a shell's background job takes no notice of it. Not at once: the
+    # signal must not meet the shell that is about to become the program.
+    sleep 0.3
     while kill -INT $child 2>/dev/null; do sleep 0.02; done
     wait $child
     check "Ctrl-C while $command loads exits 130" test $? -eq 130
