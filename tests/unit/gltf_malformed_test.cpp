@@ -330,21 +330,7 @@ TEST_F(Gltf, RefusesBrokenGlbHeaders) {
  */
 TEST_F(Gltf, SurvivesAnyValueInAnyPlace) {
     const json whole = everything(png(1, 1, 1)).withInlineBuffer();
-    const json odd[] = {nullptr,
-                        true,
-                        -1,
-                        0,
-                        3,
-                        1e9,
-                        4294967296.0,
-                        1e300,
-                        -1e300,
-                        "",
-                        "x",
-                        json::array(),
-                        {{"a", 1}},
-                        json::array({json::object()}),
-                        json::array({1, 2, 3})};
+    const std::vector<json>& odd = oddValues();
     int loaded = 0, refused = 0;
     const json flat = whole.flatten();
     for (const auto& [pointer, value] : flat.items()) {

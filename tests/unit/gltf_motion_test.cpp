@@ -68,16 +68,8 @@ TEST_F(Gltf, AnimatesEveryPathWithEveryInterpolation) {
     for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
         GltfDocument file = GltfDocument::triangle();
         const bool isSpline = interpolation[0] == 'C';
-        // With tangents of zero a spline passes its middle at the mean of its ends.
-        const auto keys = [&](std::vector<float> first, const std::vector<float>& second) {
-            const std::vector<float> zero(first.size());
-            std::vector<float> all;
-            for (const auto& value : {first, second}) {
-                if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
-                all.insert(all.end(), value.begin(), value.end());
-                if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
-            }
-            return all;
+        const auto keys = [&](const std::vector<float>& first, const std::vector<float>& second) {
+            return twoKeys(first, second, isSpline);
         };
         const std::size_t count = isSpline ? 6 : 2;
         const int times = file.addAccessor<float>({0, 2}, "SCALAR", 2);

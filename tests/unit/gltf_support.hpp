@@ -136,4 +136,39 @@ protected:
     fs::path folder_;
 };
 
+/** What no place of a document expects: the wrong type, out of range, empty. */
+inline const std::vector<nlohmann::json>& oddValues() {
+    using nlohmann::json;
+    static const std::vector<json> values{nullptr,
+                                          true,
+                                          -1,
+                                          0,
+                                          3,
+                                          1e9,
+                                          4294967296.0,
+                                          1e300,
+                                          -1e300,
+                                          "",
+                                          "x",
+                                          json::array(),
+                                          json{{"a", 1}},
+                                          json::array({json::object()}),
+                                          json::array({1, 2, 3})};
+    return values;
+}
+
+/** Values of an animation's two keys. Those of a spline come with tangents of zero, so that it passes its
+ * middle at the mean of its ends. */
+inline std::vector<float> twoKeys(const std::vector<float>& first, const std::vector<float>& second,
+                                  bool isSpline) {
+    const std::vector<float> zero(first.size());
+    std::vector<float> all;
+    for (const auto& value : {first, second}) {
+        if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
+        all.insert(all.end(), value.begin(), value.end());
+        if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
+    }
+    return all;
+}
+
 }  // namespace helio::test

@@ -89,14 +89,7 @@ void addAnimations(std::vector<CorpusFile>& files) {
         file.doc["nodes"][0]["scale"] = {1, 1, 1};
         const bool isSpline = interpolation[0] == 'C';
         const auto keys = [&](const std::vector<float>& first, const std::vector<float>& second) {
-            const std::vector<float> zero(first.size());
-            std::vector<float> all;
-            for (const auto& value : {first, second}) {
-                if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
-                all.insert(all.end(), value.begin(), value.end());
-                if (isSpline) all.insert(all.end(), zero.begin(), zero.end());
-            }
-            return all;
+            return twoKeys(first, second, isSpline);
         };
         const std::size_t count = isSpline ? 6 : 2;
         const int times = addTimes(file, {0, 2});

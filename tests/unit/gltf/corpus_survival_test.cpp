@@ -37,21 +37,7 @@ void tryLoading(const fs::path& path, const std::string& what, Outcomes& outcome
 class GltfCorpusSurvival : public Gltf {};
 
 TEST_F(GltfCorpusSurvival, AnyValueInAnyPlace) {
-    const json odd[] = {nullptr,
-                        true,
-                        -1,
-                        0,
-                        3,
-                        1e9,
-                        4294967296.0,
-                        1e300,
-                        -1e300,
-                        "",
-                        "x",
-                        json::array(),
-                        {{"a", 1}},
-                        json::array({json::object()}),
-                        json::array({1, 2, 3})};
+    const std::vector<json>& odd = oddValues();
     std::mt19937 random(1);
     Outcomes outcomes;
     for (const CorpusFile& file : gltfCorpus()) {
