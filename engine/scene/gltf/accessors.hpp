@@ -1,8 +1,7 @@
 #pragma once
 /** @file The numbers in a glTF file's buffers. */
 #include "engine/scene/gltf/container.hpp"
-
-#include <tiny_gltf.h>
+#include "engine/scene/gltf/tinygltf.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
 /** A document on its way to a Scene: container, typed model, buffers in memory. */
@@ -65,3 +65,4 @@ private:
 };
 
 }  // namespace helio::gltf
+#pragma GCC visibility pop

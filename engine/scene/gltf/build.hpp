@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
 /** Extensions whose meaning the scene model holds, in alphabetical order. */
@@ -56,3 +57,4 @@ private:
 };
 
 }  // namespace helio::gltf
+#pragma GCC visibility pop

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
 /** Primitives may share an accessor, and an accessor need have no data, so that a small file unfolds to any
@@ -25,3 +26,4 @@ private:
 };
 
 }  // namespace helio::gltf
+#pragma GCC visibility pop
