@@ -180,10 +180,12 @@ echo 'f 1 2 3' >>large.obj
 for command in info render; do
     "$program" $command large.obj >out.txt 2>err.txt &
     child=$!
-    # Again and again: until the program listens, a shell's background job takes no notice of it. Not at once: the
-    # signal must not meet the shell that is about to become the program.
-    sleep 0.3
-    while kill -INT $child 2>/dev/null; do sleep 0.02; done
+    # The moment the program listens: sooner the signal meets a shell's background job, which takes no notice of it;
+    # later a fast machine has loaded the file.
+    until [ /proc/$child/exe -ef "$program" ] && grep -q '^SigCgt:.*[2367abef]$' /proc/$child/status 2>/dev/null; do
+        kill -0 $child 2>/dev/null || break
+    done
+    kill -INT $child 2>/dev/null
     wait $child
     check "Ctrl-C while $command loads exits 130" test $? -eq 130
     check "Ctrl-C while $command loads says so" grep -q interrupted err.txt
