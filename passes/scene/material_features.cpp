@@ -25,7 +25,7 @@ const RegisterFeature normalMaps{
     rule("materials.normalMaps", "normals are those of the vertices", pack::kNormalMapFeature)};
 const RegisterFeature alpha{rule("materials.alpha", "every surface stops light", pack::kAlphaFeature)};
 const RegisterFeature models{
-    rule("materials.models", "surfaces scatter as glTF says", ~(pack::kFirstModelFeature - 1u))};
+    rule("materials.models", "surfaces scatter as glTF says", pack::kModelFeatures)};
 
 }  // namespace
 }  // namespace helio

@@ -35,7 +35,8 @@ bool isMoreThanDiffuse(const Material& m) {
 }
 
 std::uint32_t gltfFeatures(const Material& m) {
-    std::uint32_t bits = kGltfFeature;
+    std::uint32_t bits =
+        m.metallic < 1.0f || m.metallicRoughnessTexture ? kDiffuseFeatures : std::uint32_t(kGltfFeature);
     const auto add = [&](std::uint32_t bit, bool present) { bits |= present ? bit : 0u; };
     if (!isMoreThanDiffuse(m)) return bits;
     const bool dielectric = m.specular > 0.0f && m.metallic < 1.0f;
@@ -74,7 +75,7 @@ std::uint32_t materialFeatures(const Material& m) {
         bits |= gltfFeatures(m);
     if (m.normalTexture && !m.unlit) bits |= kNormalMapFeature;
     if (m.alphaMode != AlphaMode::Opaque) bits |= kAlphaFeature;
-    return bits == kGltfFeature ? 0u : bits;
+    return bits == kDiffuseFeatures ? 0u : bits;
 }
 
 std::vector<SampledTexture> sampledTextures(const Material& m) {

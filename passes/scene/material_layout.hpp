@@ -33,10 +33,15 @@ enum MaterialFeature : std::uint32_t {
     kIridescenceTextureFeature = 1u << 15,
     kAlphaFeature = 1u << 16,
     kUnlitFeature = 1u << 17,
-    kSpecularFeature = 1u << 18,   ///< some glTF material is more than diffuse
-    kMultipleFeature = 1u << 19,   ///< light between facets is made up for
-    kFirstModelFeature = 1u << 20  ///< and one bit for each Scattering::Model in order
+    kSpecularFeature = 1u << 18,    ///< some glTF material is more than diffuse
+    kMultipleFeature = 1u << 19,    ///< light between facets is made up for
+    kFirstModelFeature = 1u << 20,  ///< and one bit for each Scattering::Model in order
+    kDielectricFeature = 1u << 31   ///< some glTF material is no pure metal
 };
+inline constexpr std::uint32_t kModelFeatures = kDielectricFeature - kFirstModelFeature;
+
+/** What a material that scatters as Lambert needs beside others that are more. */
+inline constexpr std::uint32_t kDiffuseFeatures = kGltfFeature | kDielectricFeature;
 
 /** What the kernels that show this material need; 0 where it scatters as Lambert and nothing else. */
 std::uint32_t materialFeatures(const Material& material);

@@ -92,8 +92,8 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
         glm::dvec3 normal = glm::cross(light.edge1, light.edge2);
         double area = 0.5 * glm::length(normal);
         if (!(area > 0.0)) continue;
-        if (!material.emissiveTexture && g + 1 < surfaces.size() && surfaces[g + 1].material == index &&
-            surfaces[g + 1].instance == surfaces[g].instance &&
+        if (!material.emissiveTexture && material.alphaMode == AlphaMode::Opaque && g + 1 < surfaces.size() &&
+            surfaces[g + 1].material == index && surfaces[g + 1].instance == surfaces[g].instance &&
             makesParallelogram(corners, corners + 3, light)) {
             light.kind = LightKind::Parallelogram;
             area = glm::length(glm::cross(light.edge1, light.edge2));

@@ -225,7 +225,7 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
         if (materialUsed[i]) {
             const std::uint32_t features = materialFeatures(material);
-            packed.materialFeatures |= features == 0 ? kGltfFeature : features;
+            packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
             const std::array<int, 2> sets = texcoordSets(material);
             for (const SampledTexture& texture : sampledTextures(material)) {
                 const int index = textures.add(*texture.use, texture.color);
@@ -247,7 +247,7 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         packed.materials.insert(packed.materials.end(), tables.begin(), tables.end());
     }
     // Diffuse surfaces alone need none of the code that tells materials apart.
-    if (packed.materialFeatures == kGltfFeature) packed.materialFeatures = 0;
+    if (packed.materialFeatures == kDiffuseFeatures) packed.materialFeatures = 0;
 }
 
 }  // namespace helio::pack

@@ -44,7 +44,7 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
             if (isAsked) raster.emplace(what, why);
         };
         using namespace pack;
-        const bool shines = (features & (kSpecularFeature | ~(kFirstModelFeature - 1u))) != 0;
+        const bool shines = (features & (kSpecularFeature | kModelFeatures)) != 0;
         skipIf(shines, "gloss of area lights",
                "the raster pipeline shades gloss of punctual lights; surroundings "
                "are reflected as their mean");

@@ -6,12 +6,16 @@
  * Schlick's Fresnel, no compensation of multiple scattering.
  *
  * As the specification says of itself, its fresnel_mix weighs the diffuse part by 1 - F at the half vector, which
- * conserves no energy: near grazing angles, where a smooth surface mirrors nearly all light, the diffuse part is
- * there too, and a white smooth dielectric's albedo goes up to 1.95. Metals, and dielectrics without diffuse part,
- * stay below 1.
+ * conserves no energy: near grazing angles, where a surface mirrors nearly all light, the diffuse part would be there
+ * too, and a white smooth dielectric's albedo go up to 1.95. The diffuse part is therefore also bounded by what the
+ * specular lobe leaves of light from either direction, the albedo scaling that the specification takes for sheen.
+ * Sheen, whose fit passes 1 at low roughness, is divided by its albedo where that does. All parts then conserve energy
+ * and, but for the clear coat, which the specification weighs by the viewer's angle alone, are reciprocal.
  *
- * Includers define the constants HAS_TRANSMISSION, HAS_CLEARCOAT, HAS_SHEEN, HAS_IRIDESCENCE (what is false is not
- * compiled) and sheenAlbedo(cosine, roughness).
+ * Seen from inside a volume a surface is the mix by `transmission` of glass and of paint that touches the volume.
+ *
+ * Includers define the constants HAS_DIELECTRIC, HAS_TRANSMISSION, HAS_CLEARCOAT, HAS_SHEEN, HAS_IRIDESCENCE (what is
+ * false is not compiled) and sheenAlbedo(cosine, roughness).
  */
 #include "shaders/scattering/fresnel.glsl"
 #include "shaders/scattering/ggx.glsl"
@@ -39,6 +43,11 @@ struct GltfSurface {
     float filmThickness;  ///< nanometres
 };
 
+/** Light inside a volume meets its surface. */
+bool gltfInside(GltfSurface s) {
+    return HAS_TRANSMISSION && !s.thin && s.eta < 1.0;
+}
+
 struct GltfFresnel {
     vec3 dielectric;
     vec3 metal;
@@ -47,12 +56,13 @@ struct GltfFresnel {
 /** Reflectances where wo and the normal of a facet meet at `cosine`; `schlick` is the cosine outside, 0 where light
  * inside a volume does not get out. */
 GltfFresnel gltfFresnelAt(GltfSurface s, float cosine, float schlick) {
-    const bool total = HAS_TRANSMISSION && !s.thin && s.eta < 1.0 && schlick <= 0.0;
+    const bool total = gltfInside(s) && schlick <= 0.0;
     GltfFresnel f;
-    f.dielectric = total ? vec3(1.0) : fresnelSchlick(s.f0, vec3(s.f90), schlick);
+    f.dielectric = vec3(0.0);
+    if (HAS_DIELECTRIC) f.dielectric = total ? vec3(1.0) : fresnelSchlick(s.f0, vec3(s.f90), schlick);
     f.metal = fresnelSchlick(s.baseColor, vec3(1.0), cosine);
     if (HAS_IRIDESCENCE && s.film > 0.0) {
-        if (!total) f.dielectric = mix(f.dielectric, thinFilmReflectance(1.0, s.filmIndex, schlick, s.filmThickness, s.f0), s.film);
+        if (HAS_DIELECTRIC && !total) f.dielectric = mix(f.dielectric, thinFilmReflectance(1.0, s.filmIndex, schlick, s.filmThickness, s.f0), s.film);
         f.metal = mix(f.metal, thinFilmReflectance(1.0, s.filmIndex, cosine, s.filmThickness, s.baseColor), s.film);
     }
     return f;
@@ -60,8 +70,7 @@ GltfFresnel gltfFresnelAt(GltfSurface s, float cosine, float schlick) {
 
 /** The same, by the cosine of wo alone. */
 GltfFresnel gltfFresnel(GltfSurface s, float cosine) {
-    const bool inside = HAS_TRANSMISSION && !s.thin && s.eta < 1.0;
-    return gltfFresnelAt(s, cosine, inside ? schlickCosine(cosine, s.eta) : cosine);
+    return gltfFresnelAt(s, cosine, gltfInside(s) ? schlickCosine(cosine, s.eta) : cosine);
 }
 
 /** What a clear coat reflects of the light along wo, by its own normal. */
@@ -73,6 +82,31 @@ bool gltfSmooth(vec2 alpha) {
     return max(alpha.x, alpha.y) < SMOOTH_ALPHA;
 }
 
+/** Weight of the facets' lobe. */
+vec3 gltfMirrored(GltfSurface s, GltfFresnel f) {
+    if (!HAS_DIELECTRIC) return f.metal;
+    return mix(f.dielectric * (gltfInside(s) ? s.transmission : 1.0), f.metal, s.metallic);
+}
+
+/** Upper bound of the mean of (1 - cos)^5 over the facets that a viewer at `cosine` sees: the albedo of a lobe with
+ * Schlick's reflectance is at most f0 + (f90 - f0) of this. MaterialX's fit of GGX albedos (mx_ggx_dir_albedo), which
+ * is within 0.02 but for narrow lobes, raised by what it lacks; those have the bound of a smooth surface. */
+float gltfGrazing(float cosine, float alpha) {
+    const float x = clamp(cosine, 0.0, 1.0), y = clamp(alpha, 0.0, 1.0), xx = x * x, yy = y * y;
+    const float above = 0.9345 - 2.323 * x + 2.229 * y - 3.748 * x * y + 1.424 * xx - 0.7684 * yy + 1.436 * xx * y + 0.2913 * x * yy + 0.6286 * xx * yy;
+    const float below = 1.0 + 0.2281 * x + 15.94 * y - 55.83 * x * y + 13.08 * xx + 41.26 * yy + 54.9 * xx * y + 300.2 * x * yy - 285.1 * xx * yy;
+    return clamp(max(1.035 * above / below, (1.0 - 10.0 * y) * schlickWeight(x)), 0.0, 1.0);
+}
+
+/** What the facets leave to the diffuse part: `f` is the reflectance at the half vector. */
+float gltfDiffuseShare(GltfSurface s, float f, float woZ, float wiZ) {
+    if (gltfInside(s)) return 1.0;
+    float f0 = maxComponent(s.f0);
+    if (HAS_IRIDESCENCE && s.film > 0.0) f0 = max(f0, f);
+    const float bound = f0 + max(s.f90 - f0, 0.0) * gltfGrazing(min(woZ, wiZ), min(s.alpha.x, s.alpha.y));
+    return clamp(1.0 - max(f, bound), 0.0, 1.0);
+}
+
 /** Chances of the lobes, sum 1: by their albedos as far as wo tells. */
 struct GltfLobes {
     float specular, diffuse, transmission, coat, sheen;
@@ -80,11 +114,10 @@ struct GltfLobes {
 GltfLobes gltfLobes(GltfSurface s, vec3 wo) {
     const GltfFresnel f = gltfFresnel(s, wo.z);
     const float through = 1.0 - maxComponent(f.dielectric);
-    const float base = (1.0 - s.metallic) * maxComponent(s.baseColor);
+    const float base = HAS_DIELECTRIC ? (1.0 - s.metallic) * maxComponent(s.baseColor) : 0.0;
     GltfLobes lobes;
-    lobes.specular = maxComponent(mix(f.dielectric, f.metal, s.metallic));
-    // The diffuse part's weight is that of the half vectors, most of which see the surface steeply.
-    lobes.diffuse = base * (1.0 - maxComponent(s.f0));
+    lobes.specular = maxComponent(gltfMirrored(s, f));
+    lobes.diffuse = HAS_DIELECTRIC ? base * gltfDiffuseShare(s, 0.0, wo.z, 1.0) : 0.0;
     lobes.transmission = 0.0;
     if (HAS_TRANSMISSION) {
         lobes.transmission = s.transmission * base * through;
@@ -109,14 +142,15 @@ mat3 frameOf(vec3 normal) {
     return mat3(x, y, normal);
 }
 
+/** Albedo of sheen of colour 1, of light from either direction. */
+float gltfSheenAlbedo(GltfSurface s, vec3 wo, vec3 wi) {
+    return max(sheenAlbedo(wo.z, s.sheenRoughness), sheenAlbedo(abs(wi.z), s.sheenRoughness));
+}
+
 /** What the layers above the base leave of light from wi to wo. */
 float gltfLayers(GltfSurface s, vec3 wo, vec3 wi) {
     float left = 1.0 - coatReflectance(s, wo);
-    if (HAS_SHEEN) {
-        const float most = maxComponent(s.sheenColor);
-        const float albedo = max(sheenAlbedo(wo.z, s.sheenRoughness), sheenAlbedo(abs(wi.z), s.sheenRoughness));
-        left *= max(1.0 - most * albedo, 0.0);
-    }
+    if (HAS_SHEEN) left *= max(1.0 - maxComponent(s.sheenColor) * min(gltfSheenAlbedo(s, wo, wi), 1.0), 0.0);
     return left;
 }
 
@@ -130,12 +164,16 @@ ScatterValue gltfValue(GltfSurface s, vec3 wo, vec3 wi) {
     const ScatterValue facets = ggxReflection(wo, wi, alpha, h);
     const GltfFresnel f = gltfFresnel(s, clamp(dot(wo, h), 0.0, 1.0));
     const float cosine = above ? wi.z * INV_PI : 0.0;
-    float diffuseShare = 1.0 - s.metallic;
-    if (HAS_TRANSMISSION) diffuseShare *= 1.0 - s.transmission;
-    vec3 value = s.baseColor * (diffuseShare * cosine * (1.0 - maxComponent(f.dielectric)));
-    float density = lobes.diffuse * cosine;
+    vec3 value = vec3(0.0);
+    float density = 0.0;
+    if (HAS_DIELECTRIC) {
+        float diffuseShare = 1.0 - s.metallic;
+        if (HAS_TRANSMISSION) diffuseShare *= 1.0 - s.transmission;
+        value = s.baseColor * (diffuseShare * cosine * gltfDiffuseShare(s, maxComponent(f.dielectric), wo.z, wi.z));
+        density = lobes.diffuse * cosine;
+    }
     if (!isSmooth) {
-        value += mix(f.dielectric, f.metal, s.metallic) * facets.value;
+        value += gltfMirrored(s, f) * facets.value;
         density += lobes.specular * facets.density;
     }
     if (HAS_TRANSMISSION && !isSmooth && wi.z < 0.0) {
@@ -152,7 +190,7 @@ ScatterValue gltfValue(GltfSurface s, vec3 wo, vec3 wi) {
     if (HAS_CLEARCOAT || HAS_SHEEN) value *= gltfLayers(s, wo, wi);
     if (HAS_SHEEN) {
         const ScatterValue sheen = sheenValue(s.sheenRoughness, wo, wi);
-        value += s.sheenColor * sheen.value * (1.0 - coatReflectance(s, wo));
+        value += s.sheenColor * sheen.value * ((1.0 - coatReflectance(s, wo)) / max(gltfSheenAlbedo(s, wo, wi), 1.0));
         density += lobes.sheen * cosine;
     }
     if (HAS_CLEARCOAT && s.coatAlpha >= SMOOTH_ALPHA) {
@@ -181,7 +219,7 @@ ScatterSample gltfSample(GltfSurface s, vec3 wo, vec3 u) {
         const float cosine = clamp(dot(wo, h), 0.0, 1.0);
         const GltfFresnel f = gltfFresnel(s, cosine);
         result.direction = reflectedAbout(wo, h);
-        result.weight = mix(f.dielectric, f.metal, s.metallic) / lobes.specular;
+        result.weight = gltfMirrored(s, f) / lobes.specular;
         if (HAS_TRANSMISSION && isTransmission) {
             float beyond;
             fresnelDielectric(cosine, s.eta, beyond);

@@ -6,6 +6,9 @@
 #include "shaders/sampling/hash.glsl"
 #include "shaders/scene/features.glsl"
 #include "shaders/scene/materials.glsl"
+#ifdef SURFACE_MATERIALS
+#include "shaders/scene/surface_material.glsl"
+#endif
 #ifdef ENVIRONMENT_IMAGE
 #include "shaders/scene/environment.glsl"
 #endif
@@ -108,6 +111,14 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
             const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
             if (kind == LIGHT_TRIANGLE) result.radiance *= materialTexture(material, 5, texcoords(g, b)).rgb;
         }
+#ifdef SURFACE_MATERIALS
+        // A ray that happens to come here passes with what is left of alpha.
+        if (HAS_ALPHA) {
+            const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
+            const bool isSurface = kind == LIGHT_TRIANGLE || kind == LIGHT_PARALLELOGRAM;
+            if (isSurface) result.radiance *= opacity(int(identity.y), int(identity.x), b);
+        }
+#endif
     }
     if (HAS_PUNCTUAL_LIGHTS && (!HAS_AREA_LIGHTS || kind >= LIGHT_POINT)) {
         const bool directional = kind == LIGHT_DIRECTIONAL;

@@ -46,9 +46,11 @@ const bool HAS_IRIDESCENCE_TEXTURES = (MATERIAL_FEATURES & (1u << 15)) != 0u;
 const bool HAS_ALPHA = (MATERIAL_FEATURES & (1u << 16)) != 0u;
 const bool HAS_UNLIT = (MATERIAL_FEATURES & (1u << 17)) != 0u;
 const bool HAS_SPECULAR = (MATERIAL_FEATURES & (1u << 18)) != 0u;
+/** Some glTF material is no pure metal. */
+const bool HAS_DIELECTRIC = (MATERIAL_FEATURES & (1u << 31)) != 0u;
 const bool HAS_COMPENSATION = (MATERIAL_FEATURES & (1u << 19)) != 0u;
 const uint FIRST_MODEL_FEATURE = 20u;
-const bool HAS_MODELS = (MATERIAL_FEATURES >> FIRST_MODEL_FEATURE) != 0u;
+const bool HAS_MODELS = ((MATERIAL_FEATURES & 0x7fffffffu) >> FIRST_MODEL_FEATURE) != 0u;
 #define HAS_MODEL(model) ((MATERIAL_FEATURES & (1u << (FIRST_MODEL_FEATURE + (model)))) != 0u)
 const bool HAS_TANGENTS = HAS_ANISOTROPY || HAS_NORMAL_MAPS || HAS_CLEARCOAT_TEXTURES || HAS_MODEL(4u) || HAS_MODEL(2u);
 /** Some material's light goes through its surface. */
@@ -146,7 +148,7 @@ GltfSurface gltfSurface(int material, vec3 color, vec4 uv, bool front, int chann
     if (HAS_TRANSMISSION) {
         s.transmission = row8.y;
         if (HAS_TRANSMISSION_TEXTURES) s.transmission *= materialTexture(material, 22, uv).r;
-        s.thin = (materialFlags(material) & MATERIAL_THIN) != 0u;
+        s.thin = (materialFlags(material) & MATERIAL_THIN) != 0u || s.transmission <= 0.0;
         if (HAS_DISPERSION) index += (index - 1.0) * 0.025 * row8.z * float(channel - 1);
         index = max(index, 1.0);
         s.eta = front ? index : 1.0 / index;

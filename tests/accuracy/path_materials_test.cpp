@@ -105,8 +105,19 @@ double facetAlbedo(double cosine, glm::dvec2 alpha, const std::function<double(d
         }
     return sum / (double(n) * n);
 }
-/** Albedo of glTF's diffuse part: 1 - F at the half vector, over cosine-weighted directions. */
-double diffuseAlbedo(double cosine, double f0) {
+/** Bound of glTF's specular albedo: the fit of shaders/scattering/gltf.glsl, in double. */
+double specularBound(double cosine, double alpha, double f0) {
+    const double x = cosine, y = alpha;
+    const double above = 0.9345L - 2.323L * x + 2.229L * y - 3.748L * x * y + 1.424L * x * x -
+                         0.7684L * y * y + 1.436L * x * x * y + 0.2913L * x * y * y + 0.6286L * x * x * y * y;
+    const double below = 1 + 0.2281L * x + 15.94L * y - 55.83L * x * y + 13.08L * x * x + 41.26L * y * y +
+                         54.9L * x * x * y + 300.2L * x * y * y - 285.1L * x * x * y * y;
+    const double grazing = std::max(1.035L * above / below, (1 - 10 * y) * std::pow(1 - x, 5.0L));
+    return f0 + (1 - f0) * std::clamp(grazing, double(0), double(1));
+}
+/** Albedo of glTF's diffuse part: what the half vector's reflectance and the specular lobe's bounds from both
+ * sides leave, over cosine-weighted directions. */
+double diffuseAlbedo(double cosine, double f0, double alpha) {
     const glm::dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
     constexpr int n = 256;
     double sum = 0;
@@ -114,7 +125,8 @@ double diffuseAlbedo(double cosine, double f0) {
         for (int k = 0; k < n; ++k) {
             const glm::dvec3 wi = shared64::cosineHemisphere(glm::dvec2((i + 0.5L) / n, (k + 0.5L) / n));
             const glm::dvec3 h = glm::normalize(wo + wi);
-            sum += 1 - shared64::fresnelSchlick(f0, double(1), glm::dot(wo, h));
+            sum += 1 - std::max(shared64::fresnelSchlick(f0, double(1), glm::dot(wo, h)),
+                                specularBound(std::min(wo.z, wi.z), alpha, f0));
         }
     return sum / (double(n) * n);
 }
@@ -160,9 +172,9 @@ TEST(GltfMaterials, PlatesShowTheirAlbedo) {
     }
     expectMean(plate(image, 2), shared64::fresnelSchlick(double(0.8f), double(1), c), 1e-4L, p.names[2]);
     const double base = double(0.6f), f0 = 0.04L;
-    expectMean(plate(image, 3), facetAlbedo(c, a04, schlick(f0)) + base * diffuseAlbedo(c, f0), 4e-3L,
+    expectMean(plate(image, 3), facetAlbedo(c, a04, schlick(f0)) + base * diffuseAlbedo(c, f0, a04.x), 4e-3L,
                p.names[3]);
-    expectMean(plate(image, 4), shared64::fresnelSchlick(f0, double(1), c) + base * diffuseAlbedo(c, f0),
+    expectMean(plate(image, 4), shared64::fresnelSchlick(f0, double(1), c) + base * diffuseAlbedo(c, f0, 0),
                4e-3L, p.names[4]);
     expectMean(plate(image, 5), double(0.7f), 1e-4L, p.names[5]);
     expectMean(plate(image, 6), 0.25L, 1e-6L, p.names[6]);
@@ -421,6 +433,54 @@ TEST(Alpha, BlendsMasksAndShadows) {
     const Traced lit = trace(b.scene, options, 64);
     const Estimate e = estimate(lit, 0, [](std::size_t) { return true; });
     EXPECT_NEAR(e.mean, 0.75L * 0.75L / kPi, 2e-4L);
+}
+
+/** A lamp that alpha makes half transparent gives as much less, whether it is sampled or met by chance, its
+ * alpha being a factor, a texture or a mask. */
+TEST(Alpha, LampsAreWeakenedAlikeBothWays) {
+    for (int kind = 0; kind < 3; ++kind) {
+        SceneBuilder b;
+        const int white = b.material(glm::vec3(1));
+        b.quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, white);
+        Material lamp = gltf(glm::vec3(0), 0, 1);
+        lamp.specular = 0;
+        lamp.emission = glm::vec3(2);
+        lamp.doubleSided = true;
+        lamp.alphaMode = kind == 2 ? AlphaMode::Mask : AlphaMode::Blend;
+        lamp.baseColor.a = kind == 0 ? 0.3f : 1.0f;
+        if (kind > 0) {
+            // Half of it opaque, a hard edge.
+            b.scene.images.push_back({"alpha", 2, 1, std::vector<float>{1, 1, 1, 0.125f, 1, 1, 1, 0.75f}});
+            Texture t;
+            t.image = 0;
+            t.magFilter = Filter::Nearest;
+            b.scene.textures.push_back(t);
+            lamp.baseColorTexture.texture = 0;
+        }
+        b.scene.materials.push_back(lamp);
+        const int instance = b.quad({-1, 2, 1}, {1, 2, 1}, {1, 2, -1}, {-1, 2, -1}, 1);
+        b.scene.meshes[std::size_t(instance)].primitives[0].texcoords = {
+            {{0, 1}, {1, 1}, {1, 0}, {0, 1}, {1, 0}, {0, 0}}};
+        b.camera({0, 1, 12}, {0, 0, 0}, 0.001f);
+        PathTraceOptions options;
+        options.size = {8, 8};
+        options.sampler = SamplerKind::Independent;
+        options.maxDepth = 1;
+        const auto all = [](std::size_t) { return true; };
+        const Estimate sampled = estimate(trace(b.scene, options, 512), 0, all);
+        options.nextEventEstimation = false;
+        const Estimate chance = estimate(trace(b.scene, options, 2048), 0, all);
+        // Four corners of a unit square at height 2: E = L * form factor * pi, white floor.
+        const double a = 0.5L, r = std::sqrt(1 + a * a);
+        const double factor = 4 * (2 * a / r * std::atan(a / r)) / (2 * kPi);
+        const double share = std::array<double, 3>{double(0.3f), 0.4375, 0.5}[std::size_t(kind)];
+        const double truth = 2 * factor * share;
+        EXPECT_LT(std::abs(sampled.mean - truth), 4 * sampled.error)
+            << kind << ": " << sampled.mean << " +- " << sampled.error << ", not " << truth;
+        EXPECT_LT(std::abs(chance.mean - truth), 4 * chance.error)
+            << kind << ": " << chance.mean << " +- " << chance.error << ", not " << truth;
+        EXPECT_LT(std::max(sampled.error, chance.error), 0.01L * truth);
+    }
 }
 
 /** Sampling lamps, and leaving them to chance, give one picture for every material. */

@@ -1,9 +1,12 @@
 #include "tests/accuracy/scattering_lobes.hpp"
 
+#include "engine/core/shared.hpp"
+
 #include <fmt/format.h>
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace helio::test {
 namespace {
@@ -122,19 +125,49 @@ Lobe sheen() {
     return lobe;
 }
 
+/** Directional albedos of sheen at the two roughnesses of the cases, over the square root of the cosine. */
+std::string sheenTables() {
+    constexpr int nodes = 32, columns = 96, rows = 64;
+    constexpr double pi = std::numbers::pi;
+    std::string tables = "#define SHEEN_TABLES\n";
+    for (double roughness : {double(0.5L), double(0.1f)}) {
+        tables += fmt::format("const float SHEEN_{}[{}] = float[](", roughness == 0.5L ? 5 : 1, nodes);
+        for (int node = 0; node < nodes; ++node) {
+            const double root = double(node) / (nodes - 1), c = std::max(root * root, double(1e-4L));
+            const glm::dvec3 wo(std::sqrt((1 - c) * (1 + c)), double(0), c);
+            double sum = 0;
+            for (int i = 0; i < columns; ++i)
+                for (int k = 0; k < rows; ++k) {
+                    const double u = (i + 0.5L) / columns, theta = pi / 2 * u * (2 - u);
+                    const double phi = pi * (k + 0.5L) / rows;
+                    const glm::dvec3 wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                        std::cos(theta));
+                    sum += shared64::sheenValue(roughness, wo, wi).value.x * std::sin(theta) * (1 - u);
+                }
+            tables += fmt::format("{}{:.7f}", node > 0 ? ", " : "", sum * 2 * pi * pi / (columns * rows));
+        }
+        tables += ");\n";
+    }
+    return tables +
+           "float sheenAlbedo(float cosine, float roughness) { float x = sqrt(clamp(cosine, 0.0, 1.0)) * "
+           "31.0; "
+           "int i = min(int(x), 30); float f = x - float(i); return roughness < 0.3 ? mix(SHEEN_1[i], "
+           "SHEEN_1[i + 1], "
+           "f) : mix(SHEEN_5[i], SHEEN_5[i + 1], f); }";
+}
+
 /** p[0]: base colour, metallic; p[1]: alpha, eta, transmission; p[2]: f0, f90; p[3]: thin, coat, alpha of the
- * coat, sheen. */
+ * coat, sheen (negative: of roughness 0.1). */
 Lobe gltf(const std::string& name) {
     Lobe lobe{
         name,
-        {"#define HAS_TRANSMISSION true", "#define HAS_CLEARCOAT true", "#define HAS_SHEEN true",
-         "#define HAS_IRIDESCENCE true",
-         // Stands in for the table: any smooth function of both arguments below 1.
-         "#define sheenAlbedo(cosine, roughness) (0.3 - 0.25 * (cosine))",
+        {"#define HAS_DIELECTRIC true", "#define HAS_TRANSMISSION true", "#define HAS_CLEARCOAT true",
+         "#define HAS_SHEEN true", "#define HAS_IRIDESCENCE true", sheenTables(),
          fmt::format("{}gltf.glsl", kFolder),
          "#define GLTF(p) GltfSurface(p[0].xyz, p[0].w, p[1].xy, p[2].xyz, p[2].w, p[1].z, p[1].w, p[3].x > "
          "0.5, "
-         "p[3].y, p[3].z, vec3(0.0, 0.0, 1.0), vec3(p[3].w), 0.5, p[3].x < 0.0 ? 1.0 : 0.0, 1.3, 400.0)",
+         "p[3].y, p[3].z, vec3(0.0, 0.0, 1.0), vec3(abs(p[3].w)), p[3].w < 0.0 ? 0.1 : 0.5, "
+         "p[3].x < 0.0 ? 1.0 : 0.0, 1.3, 400.0)",
          "#define VALUE(p, wo, wi) gltfValue(GLTF(p), wo, wi)",
          "#define SAMPLE(p, wo, u) gltfScatter(GLTF(p), wo, u)"},
         {}};
@@ -174,22 +207,46 @@ Lobe gltfClear() {
     return lobe;
 }
 
-/** What holds a diffuse part, a coat or sheen: the specification's mixes conserve no energy, or weigh by wo
- * alone. */
+/** What holds a diffuse part or sheen. */
 Lobe gltfMixed() {
     Lobe lobe = gltf("gltfMixed");
-    lobe.conserves = false;
-    lobe.reciprocal = false;
-    for (float alpha : {1e-4f, 0.2f, 1.0f})
-        lobe.cases.push_back(gltfCase(fmt::format("plastic alpha {}", alpha), 1, 0, glm::vec2(alpha)));
-    lobe.cases.push_back(gltfCase("half metal", 0.7f, 0.5f, glm::vec2(0.3f)));
-    LobeCase coated = gltfCase("coated", 0.6f, 0.3f, glm::vec2(0.5f));
-    coated.p[3] = {1, 1, 0.05f, 0};
-    lobe.cases.push_back(coated);
-    LobeCase cloth = gltfCase("cloth", 0.4f, 0, glm::vec2(0.8f));
+    for (float alpha : {0.0f, 1e-4f, 1e-3f, 0.01f, 0.05f, 0.2f, 0.5f, 1.0f})
+        for (float f0 : {0.04f, 0.25f})
+            lobe.cases.push_back(
+                gltfCase(fmt::format("plastic alpha {} f0 {}", alpha, f0), 1, 0, glm::vec2(alpha), f0));
+    lobe.cases.push_back(gltfCase("brushed plastic", 1, 0, {0.8f, 0.02f}));
+    lobe.cases.push_back(gltfCase("half metal", 1, 0.5f, glm::vec2(0.3f)));
+    LobeCase cloth = gltfCase("cloth", 1, 0, glm::vec2(0.8f));
     cloth.p[3] = {1, 0, 0, 0.9f};
     lobe.cases.push_back(cloth);
-    LobeCase all = gltfCase("all", 0.6f, 0.2f, {0.5f, 0.1f});
+    cloth.name = "fine cloth";
+    cloth.p[3].w = -1;
+    lobe.cases.push_back(cloth);
+    LobeCase film = gltfCase("iridescent plastic", 1, 0, glm::vec2(0.2f));
+    film.p[3].x = -1;
+    lobe.cases.push_back(film);
+    // A mix of glass and paint, from outside and from inside.
+    for (float eta : {1.5f, 1 / 1.5f}) {
+        LobeCase painted = gltfCase(fmt::format("painted glass eta {}", eta), 1, 0.2f, {0.5f, 0.1f});
+        painted.p[1].z = eta;
+        painted.p[1].w = 0.5f;
+        painted.p[3] = {0, 0, 0, 0};
+        lobe.cases.push_back(painted);
+    }
+    return lobe;
+}
+
+/** Clear coats: the specification weighs them by the viewer's angle alone. */
+Lobe gltfCoated() {
+    Lobe lobe = gltf("gltfCoated");
+    lobe.reciprocal = false;
+    for (float coatAlpha : {0.0f, 0.05f, 0.5f, 1.0f}) {
+        LobeCase coated =
+            gltfCase(fmt::format("coat alpha {}", coatAlpha), 1, 0.3f, {0.5f, coatAlpha > 0 ? 0.5f : 0.1f});
+        coated.p[3] = {1, 1, coatAlpha, 0};
+        lobe.cases.push_back(coated);
+    }
+    LobeCase all = gltfCase("all", 1, 0.2f, {0.5f, 0.1f});
     all.p[1].w = 0.5f;
     all.p[3] = {0, 0.5f, 0.3f, 0.5f};
     lobe.cases.push_back(all);
@@ -207,7 +264,7 @@ const std::vector<Lobe>& lobes() {
     static const std::vector<Lobe> all = {
         diffuse(),        orenNayar(),           phongLike("phong"), phongLike("blinnPhong"),
         facets("ggx", 0), facets("beckmann", 1), conductor(),        dielectric(),
-        sheen(),          gltfClear(),           gltfMixed()};
+        sheen(),          gltfClear(),           gltfMixed(),        gltfCoated()};
     return all;
 }
 
