@@ -30,13 +30,28 @@ void checkAxes(const Scene& scene, const PlacedCamera& placed) {
                      "give the camera's node and its parents scales that are not 0");
 }
 
+glm::dvec3 originOf(const Scene::Bounds& bounds) {
+    if (bounds.empty()) return glm::dvec3(0.0);
+    const glm::dvec3 centre = 0.5 * bounds.lower + 0.5 * bounds.upper, size = bounds.upper - bounds.lower;
+    const double distance = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
+    return distance > std::max({size.x, size.y, size.z}) ? centre : glm::dvec3(0.0);
+}
+
+PackOptions about(PackOptions pack, const glm::dvec3& origin) {
+    pack.origin = origin;
+    return pack;
+}
+
 }  // namespace
 
 PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptions& pack)
-    : deviceScene(device, scene, pack),
-      bounds(scene.bounds()),
+    : bounds(scene.bounds()),
+      origin(originOf(bounds)),
+      deviceScene(device, scene, about(pack, origin)),
       skipped(scene.skipped),
       warnings(deviceScene.info().warnings) {
+    bounds.lower -= origin;
+    bounds.upper -= origin;
     const SceneFeatures all(scene);
     features = all.present();
     for (const SceneFeatures::Absent& absent : all.absent()) skipped.emplace_back(absent.name, absent.why);

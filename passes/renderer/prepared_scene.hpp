@@ -20,9 +20,12 @@ class RasterSession;
 struct PreparedScene {
     PreparedScene(Device& device, const Scene& scene, const PackOptions& pack);
     ~PreparedScene();
+    Scene::Bounds bounds;  ///< about `origin`
+    /** The world's point that what is on the device is relative to: 0, or the middle of a scene that is
+     * farther from the world's origin than it is large, whose details floats would lose there. */
+    glm::dvec3 origin{0.0};
     DeviceScene deviceScene;
     SceneIdentity identity;
-    Scene::Bounds bounds;
     std::vector<std::string> features;
     std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why
     std::vector<std::string> warnings;                         ///< what is not shown as it is given

@@ -126,13 +126,14 @@ struct Renderer::Impl {
 void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     const RenderOptions& options = job.options;
     if (!job.notify({.stage = "load"})) return;
-    const View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
+    View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
     warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;
     const PackOptions pack =
         path ? PathTracer::packOptions(scene, pathTraceOptions(options)) : rasterPackOptions();
     PreparedScene& prepared = scenes.prepare(scene, environment, pack);
+    view.transform[3] -= glm::dvec4(prepared.origin, 0.0);
     job.result.features = prepared.features;
     job.result.skipped = prepared.skipped;
     job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());

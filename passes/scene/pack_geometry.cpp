@@ -50,7 +50,8 @@ glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
 
 }  // namespace
 
-std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::vector<Surface>& surfaces) {
+std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
+                                std::vector<Surface>& surfaces) {
     const std::vector<Instance> instances = scene.instances();
     std::uint64_t total = 0;
     for (const Instance& instance : instances) {
@@ -89,7 +90,8 @@ std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::ve
 
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const Instance& instance = instances[i];
-        const glm::dmat4& transform = instance.transform;
+        glm::dmat4 transform = instance.transform;
+        transform[3] -= glm::dvec4(origin, 0.0);
         const glm::dmat3 linear(transform);
         const glm::dmat3 forNormals = normalMatrix(linear);
         const bool mirrored = glm::determinant(linear) < 0.0;

@@ -112,14 +112,14 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
     }
 }
 
-void addPunctual(const Scene& scene, std::vector<Candidate>& lights) {
+void addPunctual(const Scene& scene, const glm::dvec3& origin, std::vector<Candidate>& lights) {
     const double radius = boundingRadius(scene);
     for (const PlacedLight& placed : scene.placedLights()) {
         const PunctualLight& source = scene.lights[std::size_t(placed.light)];
         const double strength = mean(glm::dvec3(source.intensity));
         if (!(strength > 0.0)) continue;
         Candidate light;
-        light.origin = glm::dvec3(placed.transform[3]);
+        light.origin = glm::dvec3(placed.transform[3]) - origin;
         light.radiance = source.intensity;
         const glm::dvec3 forward = -glm::dvec3(placed.transform[2]);
         light.normal = glm::length(forward) > 0.0 ? glm::normalize(forward) : glm::dvec3(0, 0, -1);
@@ -241,7 +241,7 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     packed.areaLights = !candidates.empty();
     const std::size_t areaCount = candidates.size();
     for (const Candidate& light : candidates) packed.triangleLights |= light.kind == LightKind::Triangle;
-    addPunctual(scene, candidates);
+    addPunctual(scene, options.origin, candidates);
     packed.punctualLights = candidates.size() > areaCount;
     if (options.sampleSurfaces && !packed.environmentMap.empty()) addEnvironment(scene, packed, candidates);
     packed.lightCount = std::uint32_t(candidates.size());

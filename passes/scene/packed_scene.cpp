@@ -117,7 +117,8 @@ KernelVariant acceleratorVariant(AcceleratorKind kind) {
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
     PackedScene packed;
     std::vector<pack::Surface> surfaces;
-    const std::vector<glm::vec3> positions = pack::geometry(scene, packed, surfaces);
+    std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
+    pack::collapseTwins(scene, surfaces, positions);
 
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;

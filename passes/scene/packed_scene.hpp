@@ -46,14 +46,18 @@ struct PackOptions {
     LightChoice lights = LightChoice::Power;
     /** PackedScene::diffuseEnvironment is made. */
     bool diffuseEnvironment = false;
+    /** The point of the world that becomes the packed scene's origin, so that floats resolve a scene that
+     * stands far from the world's. */
+    glm::dvec3 origin{0.0};
     bool operator==(const PackOptions&) const = default;
 };
 
 /** Arrays for the device. "Slot" is a triangle's place in `triangles`; "g" is its global index in scene
  * order: instances as Scene::instances() lists them, then the mesh's triangles over its primitives. */
 struct PackedScene {
-    /** 3 texels a slot: v0.xyz | bits(g), v1.xyz | bits(instance), v2.xyz | bits(material). World space,
-     * transformed in double and rounded once; counter-clockwise is front, mirrored transforms included. */
+    /** 3 texels a slot: v0.xyz | bits(g), v1.xyz | bits(instance), v2.xyz | bits(material). World space
+     * about PackOptions::origin, transformed in double and rounded once; counter-clockwise is front, mirrored
+     * transforms included. */
     std::vector<glm::vec4> triangles;
     /** First g of every instance, and the number of triangles at the end. */
     std::vector<std::uint32_t> instanceFirst;
@@ -141,7 +145,12 @@ struct Surface {
 };
 
 /** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
-std::vector<glm::vec3> geometry(const Scene& scene, PackedScene& packed, std::vector<Surface>& surfaces);
+std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
+                                std::vector<Surface>& surfaces);
+/** Triangles that lie exactly on an opaque one of lower g become points, which nothing meets: it covers them
+ * from both sides, by the rule that the lower index wins a tie. Else rounding would let the one shadow the
+ * other, and its light would count twice. */
+void collapseTwins(const Scene& scene, std::span<const Surface> surfaces, std::vector<glm::vec3>& positions);
 /** Materials and textures that some instance uses. */
 void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed);
 /** The light table: emissive triangles (pairs that make a parallelogram as one) and punctual lights, chosen
