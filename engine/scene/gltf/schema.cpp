@@ -33,10 +33,13 @@ Check asset() {
 }
 
 Check accessor() {
+    // Offsets of sparse parts are an int in tinygltf.
+    const Check sparseOffset = integer(0, maximumInt);
     const Check indices = object({{"bufferView", indexInto("bufferViews"), required},
-                                  {"byteOffset", size()},
+                                  {"byteOffset", sparseOffset},
                                   {"componentType", oneOf({5121, 5123, 5125}), required}});
-    const Check values = object({{"bufferView", indexInto("bufferViews"), required}, {"byteOffset", size()}});
+    const Check values =
+        object({{"bufferView", indexInto("bufferViews"), required}, {"byteOffset", sparseOffset}});
     return object({
         {"bufferView", indexInto("bufferViews")},
         {"byteOffset", size()},

@@ -1,0 +1,3 @@
+/** @file tinygltf's implementation. */
+#define TINYGLTF_IMPLEMENTATION
+#include "engine/scene/gltf/tinygltf.hpp"
