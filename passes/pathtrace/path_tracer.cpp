@@ -230,6 +230,11 @@ bool PathTracer::advance(std::uint32_t sampleEnd) {
     return impl_->advance(sampleEnd);
 }
 
+void PathTracer::restart(std::uint32_t seed) {
+    impl_->options_.seed = seed;
+    impl_->begun_ = false;
+}
+
 void PathTracer::setTurnBudget(std::uint32_t turns) {
     assert(turns >= 1 && turns <= 33000);
     impl_->options_.turnBudget = turns;

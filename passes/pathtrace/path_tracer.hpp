@@ -83,6 +83,8 @@ public:
      * samples more than were reached before, and 2^24 in all. */
     bool advance(std::uint32_t sampleEnd);
 
+    /** Begins anew with another seed, into a film that the caller has cleared; counters go on. */
+    void restart(std::uint32_t seed);
     /** Loop turns of the next dispatches, see PathTraceOptions::turnBudget: how long one takes. */
     void setTurnBudget(std::uint32_t turns);
 

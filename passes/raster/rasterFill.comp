@@ -9,7 +9,7 @@
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer uRecords;
 layout(set = 0, binding = 1, std430) readonly buffer uState { RasterState state; };
-layout(set = 0, binding = 2, std430) readonly buffer uStarts { uint starts[]; };
+layout(set = 0, binding = 2, std430) readonly buffer uStarts { uvec2 starts[]; };  ///< place, length
 layout(set = 0, binding = 3, std430) buffer uCounts { uint counts[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer uEntries { uint entries[]; };
 
@@ -23,7 +23,7 @@ void main() {
     for (; walk.left > 0; advance(walk)) {
         if (touches(walk)) {
             int cell = cellIndex(walk);
-            entries[starts[cell] + atomicAdd(counts[cell], 0xffffffffu) - 1u] = index;
+            entries[starts[cell].x + atomicAdd(counts[cell], 0xffffffffu) - 1u] = index;
         }
     }
 }

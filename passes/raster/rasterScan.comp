@@ -1,5 +1,5 @@
-// Turns the cells' counts into the places of their lists (exclusive prefix sums, the total last), and finds how many
-// segments the longest of the tiles' lists has. One workgroup.
+// Turns the cells' counts into the places of their lists (exclusive prefix sums), lists the
+// tiles that have entries, and finds how many segments the longest of their lists has. One workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -11,16 +11,20 @@
 layout(local_size_x = 256) in;
 layout(set = 0, binding = 0, std430) buffer uState { RasterState state; };
 layout(set = 0, binding = 1, std430) readonly buffer uCounts { uint counts[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer uStarts { uint starts[]; };
+layout(set = 0, binding = 2, std430) writeonly buffer uStarts { uvec2 starts[]; };  ///< place, length
 layout(set = 0, binding = 3, std430) buffer uCounters { uint64_t counters[]; };
+layout(set = 0, binding = 4, std430) writeonly buffer uTiles { uint tiles[]; };
 
 const int LANES = 256;
 shared uint sums[LANES];
+shared uint listed;
 
 void main() {
     int lane = int(gl_LocalInvocationIndex);
+    if (lane == 0) listed = 0u;
     ivec2 size = imageSizePixels();
-    int cells = levelStart(size, LEVELS);
+    bool idle = state.recordCount == 0u;
+    int cells = idle ? 0 : levelStart(size, LEVELS);
     int share = (cells + LANES - 1) / LANES;
     int begin = min(lane * share, cells), end = min(begin + share, cells);
 
@@ -36,28 +40,27 @@ void main() {
     }
     uint running = sums[lane] - sum;
     for (int k = begin; k < end; ++k) {
-        starts[k] = running;
-        running += counts[k];
+        uint length_ = counts[k];
+        starts[k] = uvec2(running, length_);
+        running += length_;
     }
-    if (lane == LANES - 1) {
-        starts[cells] = sums[lane];
-        atomicAdd(counters[COUNT_ENTRIES], uint64_t(sums[lane]));
-    }
+    if (lane == LANES - 1) atomicAdd(counters[COUNT_ENTRIES], uint64_t(sums[lane]));
     barrier();
 
-    ivec2 tiles = levelCells(size, 0);
-    int count = tiles.x * tiles.y;
+    ivec2 grid = levelCells(size, 0);
+    int count = idle ? 0 : grid.x * grid.y;
     int firstOf[LEVELS];
     [[unroll]] for (int level = 0; level < LEVELS; ++level) firstOf[level] = levelStart(size, level);
     uint longest = 0u;
     for (int tile = lane; tile < count; tile += LANES) {
-        int ty = tile / tiles.x, tx = tile - ty * tiles.x;
+        int ty = tile / grid.x, tx = tile - ty * grid.x;
         uint entries = 0u;
         [[unroll]] for (int level = 0; level < LEVELS; ++level) {
             int stride = levelCells(size, level).x;
             entries += counts[firstOf[level] + (ty >> (2 * level)) * stride + (tx >> (2 * level))];
         }
         longest = max(longest, entries);
+        if (entries > 0u) tiles[atomicAdd(listed, 1u)] = uint(tx) | uint(ty) << 16;
     }
     sums[lane] = longest;
     barrier();
@@ -66,11 +69,12 @@ void main() {
         barrier();
     }
     if (lane == 0) {
-        state.tileGroups[0] = uint(tiles.x);
-        state.tileGroups[1] = uint(tiles.y);
+        state.tileCount = listed;
+        state.tileGroups[0] = min(listed, TILE_ROW);
+        state.tileGroups[1] = (listed + TILE_ROW - 1u) / TILE_ROW;
         state.tileGroups[2] = 1u;
-        state.moreGroups[0] = uint(tiles.x);
-        state.moreGroups[1] = uint(tiles.y);
+        state.moreGroups[0] = state.tileGroups[0];
+        state.moreGroups[1] = state.tileGroups[1];
         state.moreGroups[2] = max((sums[0] + SEGMENT - 1u) / SEGMENT, 1u) - 1u;
     }
 }

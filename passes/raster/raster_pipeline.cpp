@@ -18,7 +18,7 @@ namespace {
 constexpr int kLevels = 6;
 constexpr std::uint32_t kClipParts = 6;
 constexpr std::uint32_t kRecordBytes = 64;
-constexpr std::uint64_t kStateBytes = 76;
+constexpr std::uint64_t kStateBytes = 80;
 constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52,
                         kMoreGroups = 64;
 constexpr std::uint32_t kSetupTriangles = 256;  // of a workgroup of set-up
@@ -103,7 +103,9 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
     const Buffer clipped = graph.buffer("raster.clipped", {std::uint64_t(batch) * 4});
     const Buffer record = graph.buffer("raster.records", {records * kRecordBytes});
     const Buffer counts = graph.buffer("raster.counts", {cells * 4});
-    const Buffer starts = graph.buffer("raster.starts", {(cells + 1) * 4});
+    const Buffer starts = graph.buffer("raster.starts", {cells * 8});
+    const Buffer tiles =
+        graph.buffer("raster.tiles", {std::uint64_t((width + 15) / 16) * ((height + 15) / 16) * 4});
     const Buffer entry = graph.buffer("raster.entries", {entries * 4});
 
     const bool orthographic = view->orthographic;
@@ -145,7 +147,7 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
         graph.compute("raster.scan", shaders::rasterScan)
             .reads({{"uCounts", counts}})
-            .overwrites({{"uStarts", starts}})
+            .overwrites({{"uStarts", starts}, {"uTiles", tiles}})
             .modifies({{"uState", state}, {"uCounters", target.counters}})
             .record([push](Commands& c) { c.push(push()).dispatch(1); });
         graph.compute("raster.fill", shaders::rasterFill)
@@ -154,16 +156,24 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
             .overwrites({{"uEntries", entry}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kFillGroups); });
-        const std::vector<Binding> lists = {
-            {"uRecords", record}, {"uEntries", entry, Format::R32UI}, {"uStarts", starts, Format::R32UI}};
-        graph.compute("raster.tile", options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile)
-            .reads(lists)
-            .modifies({{"uVisibility", target.visibility, window},
-                       {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
-                       {"uCounters", target.counters}})
+        const std::vector<Binding> lists = {{"uRecords", record},
+                                            {"uEntries", entry, Format::R32UI},
+                                            {"uStarts", starts, Format::RG32UI},
+                                            {"uTiles", tiles, Format::R32UI},
+                                            {"uState", state, Format::R32UI}};
+        const bool paired = width % 2 == 0;  // two keys at a time
+        Pass tile = paired ? graph.compute("raster.tile", options_.stripRows == 8 ? shaders::rasterTileTall
+                                                                                  : shaders::rasterTile)
+                           : graph.compute("raster.tile", shaders::rasterTileMore,
+                                           {.spec = {{"FIRST_SEGMENT", std::uint32_t(0)}}});
+        tile.reads(lists)
+            .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
-        graph.compute("raster.tileMore", shaders::rasterTileMore)
+        if (paired) tile.modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
+        graph
+            .compute("raster.tileMore", shaders::rasterTileMore,
+                     {.spec = {{"FIRST_SEGMENT", std::uint32_t(1)}}})
             .reads(lists)
             .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)

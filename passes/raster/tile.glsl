@@ -1,14 +1,15 @@
 // The tile kernel: a workgroup owns 16x16 pixels and one segment of the tile's lists; an invocation owns ROWS rows of
-// two columns, in registers. The invocations of a subgroup set up a triangle each for the tile and then draw all of
-// them together, handing the set-ups round by shuffles. No barriers, and no atomics but for segments after the first
-// (TILE_SHARED): even masked out, they cost more than drawing.
+// two columns, in registers, and eight neighbours a strip. The invocations of a subgroup set up a triangle each, keep
+// those that may touch the subgroup's strips, and then draw these all together, handing the set-ups round by
+// shuffles. No barriers, and no atomics but for segments after the first and images of odd width (TILE_SHARED): even
+// masked out, they cost more than drawing.
 #ifndef PASSES_RASTER_TILE_GLSL
 #define PASSES_RASTER_TILE_GLSL
 #include "shaders/raster/view.glsl"
 #include "shaders/raster/bin.glsl"
 
 #ifdef TILE_SHARED
-const uint FIRST_SEGMENT = 1u;
+layout(constant_id = 123) const uint FIRST_SEGMENT = 1u;
 #else
 const uint FIRST_SEGMENT = 0u;
 #endif
@@ -17,11 +18,16 @@ layout(local_size_x = 128 / ROWS) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer uRecords;
 layout(set = 0, binding = 1) uniform usamplerBuffer uEntries;
 layout(set = 0, binding = 2) uniform usamplerBuffer uStarts;
+#ifdef TILE_SHARED
 layout(set = 0, binding = 3, std430) buffer uVisibility { uint64_t visibility[]; };
-layout(set = 0, binding = 4, std430) buffer uCounters { uint64_t counters[]; };
-#ifndef TILE_SHARED
-layout(set = 0, binding = 5, rg32ui) uniform uimageBuffer uVisibilityTexels;  ///< the same, to read: faster on CPUs
+#else
+// Two neighbouring pixels at a time: the image's width is even.
+layout(set = 0, binding = 3, std430) buffer uVisibility { u64vec2 visibility[]; };
+layout(set = 0, binding = 5, rgba32ui) uniform uimageBuffer uVisibilityTexels;  ///< the same, to read: faster on CPUs
 #endif
+layout(set = 0, binding = 4, std430) buffer uCounters { uint64_t counters[]; };
+layout(set = 0, binding = 6) uniform usamplerBuffer uTiles;  ///< state.tileCount tiles that have entries
+layout(set = 0, binding = 7) uniform usamplerBuffer uState;  ///< RasterState
 
 // Edge values are cut here: over a tile they change by less than 2^29, so what is cut keeps its sign.
 const int64_t EDGE_LIMIT = 1l << 30;
@@ -60,53 +66,44 @@ TileTriangle shuffleTriangle(TileTriangle t, uint from) {
                         subgroupShuffle(t.id, from));
 }
 
-/// A triangle at the row of an invocation's strip that is drawn now.
-struct Strip {
-    TileTriangle t;
-    ivec3 edge;  // left column
-    double left, right;    // depth of the columns at the tile's first row ...
-    double zLeft, zRight;  // ... and at this one
-};
-
-Strip beginStrip(TileTriangle t, ivec2 at) {
-    Strip s;
-    s.t = t;
-    s.edge = t.edge + t.right * at.x + t.down * at.y;
-    s.left = t.depth + t.depthRight * double(at.x);
-    s.right = t.depth + t.depthRight * double(at.x + 1);
-    double gain = t.depthDown * double(at.y);
-    s.zLeft = s.left + gain;
-    s.zRight = s.right + gain;
-    return s;
+/// Whether some pixel of a rectangle (first pixel from the tile's, and the last from that) is inside all three edges
+/// taken one by one.
+bool mayTouch(TileTriangle t, ivec2 first, ivec2 extent) {
+    ivec3 most = t.edge + t.right * first.x + t.down * first.y + max(t.right, ivec3(0)) * extent.x +
+                 max(t.down, ivec3(0)) * extent.y;
+    return (most.x | most.y | most.z) >= 0;
 }
 
-/// Goes on from row k. Sums begin again every four rows, so that strips of any length round alike.
-void nextRow(inout Strip s, int k, ivec2 at) {
-    s.edge += s.t.down;
-    if ((k & 3) == 3) {
-        double gain = s.t.depthDown * double(at.y + k + 1);
-        s.zLeft = s.left + gain;
-        s.zRight = s.right + gain;
-    } else {
-        s.zLeft += s.t.depthDown;
-        s.zRight += s.t.depthDown;
-    }
+/// Key of a pixel; where the triangle does not cover it, one of depth 0: behind everything, and at the end a miss.
+uint64_t coveredKey(TileTriangle t, ivec3 edge, double z) {
+    int depth = clamp(floatBitsToInt(float(z)), t.low, t.high) & ~((edge.x | edge.y | edge.z) >> 31);
+    return visibilityKey(depth, t.id);
 }
 
-/// Key of a column's pixel, 0 where it is not covered.
-uint64_t stripKey(Strip s, int column) {
-    ivec3 e = column == 0 ? s.edge : s.edge + s.t.right;
-    int z = clamp(floatBitsToInt(float(column == 0 ? s.zLeft : s.zRight)), s.t.low, s.t.high);
-    return (e.x | e.y | e.z) >= 0 ? visibilityKey(z, s.t.id) : 0ul;
+/// Writes two neighbouring pixels' keys where they are nearer than what is there.
+void store(ivec2 pixel, ivec2 size, u64vec2 best) {
+    bool insideY = pixel.y < size.y, inside0 = insideY && pixel.x < size.x, inside1 = insideY && pixel.x + 1 < size.x;
+    int index = pixel.y * size.x + pixel.x;
+    bool hit0 = inside0 && unpackUint2x32(best.x).y != 0u, hit1 = inside1 && unpackUint2x32(best.y).y != 0u;
+#ifdef TILE_SHARED
+    if (hit0) atomicMax(visibility[index], best.x);
+    if (hit1) atomicMax(visibility[index + 1], best.y);
+#else
+    uvec4 seen = imageLoad(uVisibilityTexels, inside0 ? index >> 1 : 0);
+    u64vec2 old = u64vec2(packUint2x32(seen.xy), packUint2x32(seen.zw));
+    if (hit0 || hit1) visibility[index >> 1] = u64vec2(hit0 ? max(best.x, old.x) : old.x, hit1 ? max(best.y, old.y) : old.y);
+#endif
 }
 
 void main() {
     ivec2 size = imageSizePixels();
-    ivec2 tiles = ivec2(gl_NumWorkGroups.xy);
-    // Workgroups from both halves of the image alternate: drivers that cut the grid in contiguous parts, one for a
+    // Workgroups from both ends of the list alternate: drivers that cut the grid in contiguous parts, one for a
     // thread, then share the work evenly.
-    int half_ = (tiles.y + 1) / 2, row = int(gl_WorkGroupID.y);
-    ivec2 tile = ivec2(int(gl_WorkGroupID.x), row < half_ ? 2 * row : 2 * (row - half_) + 1);
+    int count = int(texelFetch(uState, STATE_TILE_COUNT).x), half_ = (count + 1) / 2;
+    int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+    if (group >= count) return;
+    uint packed = texelFetch(uTiles, group < half_ ? 2 * group : 2 * (group - half_) + 1).x;
+    ivec2 tile = ivec2(int(packed & 0xffffu), int(packed >> 16));
 
     // The lists of the tile's cells, end to end: entry i of all lies at i + shift[level].
     uint ends[LEVELS];
@@ -115,24 +112,28 @@ void main() {
     int firstCell = 0;
     [[unroll]] for (int level = 0; level < LEVELS; ++level) {
         ivec2 cells = levelCells(size, level), cell = tile >> (2 * level);
-        int at = firstCell + cell.y * cells.x + cell.x;
-        uint first = texelFetch(uStarts, at).x;
-        shift[level] = first - total;
-        total += texelFetch(uStarts, at + 1).x - first;
+        uvec2 list = texelFetch(uStarts, firstCell + cell.y * cells.x + cell.x).xy;
+        shift[level] = list.x - total;
+        total += list.y;
         ends[level] = total;
         firstCell += cells.x * cells.y;
     }
     uint segment = gl_WorkGroupID.z + FIRST_SEGMENT;
     uint begin = min(segment * SEGMENT, total), end = min(begin + SEGMENT, total);
 
-    int lane = int(gl_LocalInvocationIndex);
+    // Invocations in the order of the subgroups, so that what a subgroup owns is a rectangle.
+    int lane = int(gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID);
     ivec2 origin = tile * TILE_SIZE, at = ivec2(2 * (lane & 7), (lane >> 3) * ROWS);
-    uint64_t best[2 * ROWS];
-    [[unroll]] for (int k = 0; k < 2 * ROWS; ++k) best[k] = 0ul;
+    int firstLane = int(gl_SubgroupID * gl_SubgroupSize);
+    ivec2 corner = ivec2(0, (firstLane >> 3) * ROWS);
+    ivec2 extent = ivec2(15, max(int(gl_SubgroupSize) >> 3, 1) * ROWS - 1);
+    u64vec2 best[ROWS];
+    [[unroll]] for (int k = 0; k < ROWS; ++k) best[k] = u64vec2(0ul);
     // A workgroup may be smaller than a subgroup.
     uint chunk = min(gl_SubgroupSize, uint(LANES));
     for (uint first = begin; first < end; first += chunk) {
         uint i = first + gl_SubgroupInvocationID;
+        bool valid = i < end;
         i = min(i, end - 1u);
         uint place = i + shift[0];
         [[unroll]] for (int level = 1; level < LEVELS; ++level) place = i >= ends[level - 1] ? i + shift[level] : place;
@@ -140,26 +141,29 @@ void main() {
         TileTriangle mine = setUp(unpackRecord(texelFetch(uRecords, texel), texelFetch(uRecords, texel + 1),
                                                texelFetch(uRecords, texel + 2), texelFetch(uRecords, texel + 3)),
                                   origin);
-        uint count = min(chunk, end - first);
-        for (uint j = 0u; j < count; ++j) {
-            Strip strip = beginStrip(shuffleTriangle(mine, j), at);
+        uint pending = subgroupBallot(valid && mayTouch(mine, corner, extent)).x;
+        for (; pending != 0u; pending &= pending - 1u) {
+            TileTriangle t = shuffleTriangle(mine, uint(findLSB(pending)));
+            ivec3 edge = t.edge + t.right * at.x + t.down * at.y;
+            double left = t.depth + t.depthRight * double(at.x), right = t.depth + t.depthRight * double(at.x + 1);
+            double gain = t.depthDown * double(at.y), zLeft = left + gain, zRight = right + gain;
             [[unroll]] for (int k = 0; k < ROWS; ++k) {
-                [[unroll]] for (int c = 0; c < 2; ++c) best[2 * k + c] = max(best[2 * k + c], stripKey(strip, c));
-                nextRow(strip, k, at);
+                best[k].x = max(best[k].x, coveredKey(t, edge, zLeft));
+                best[k].y = max(best[k].y, coveredKey(t, edge + t.right, zRight));
+                edge += t.down;
+                // Sums begin again every four rows, so that they round little.
+                if ((k & 3) == 3) {
+                    gain = t.depthDown * double(at.y + k + 1);
+                    zLeft = left + gain;
+                    zRight = right + gain;
+                } else {
+                    zLeft += t.depthDown;
+                    zRight += t.depthDown;
+                }
             }
         }
     }
-    [[unroll]] for (int k = 0; k < 2 * ROWS; ++k) {
-        ivec2 pixel = origin + at + ivec2(k & 1, k >> 1);
-        int index = pixel.y * size.x + pixel.x;
-        bool seen = pixel.x < size.x && pixel.y < size.y && best[k] != 0ul;
-#ifdef TILE_SHARED
-        if (seen) atomicMax(visibility[index], best[k]);
-#else
-        uvec2 old = imageLoad(uVisibilityTexels, seen ? index : 0).xy;
-        if (seen && best[k] > packUint2x32(old)) visibility[index] = best[k];
-#endif
-    }
+    [[unroll]] for (int k = 0; k < ROWS; ++k) store(origin + at + ivec2(0, k), size, best[k]);
     if (lane == 0) atomicAdd(counters[COUNT_TILE_VISITED], uint64_t(end - begin));
 }
 

@@ -21,9 +21,12 @@ struct RasterState {
     uint largeGroups[3];  // workgroups of the indirect dispatches
     uint clipGroups[3];
     uint fillGroups[3];
-    uint tileGroups[3];  // for the first segment of every tile
+    uint tileGroups[3];  // for the first segment of every tile with entries
     uint moreGroups[3];  // for the others, most often none
+    uint tileCount;      // tiles with entries, each x | y << 16
 };
+const int STATE_TILE_COUNT = 19;  // its place among the words
+const uint TILE_ROW = 32768u;     // workgroups of tiles in x: some devices have no more than 65,535
 
 // Clipping a triangle by five planes leaves at most eight corners: a fan of at most six triangles.
 const uint CLIP_PARTS = 6u;

@@ -107,6 +107,18 @@ def gltf_text_faults():
     case("many-values", b'{"asset":{"version":"2.0"},"nodes":[' + b"{}," * 400000 + b"{}]}", "gltf")
     case("many-unknown-values", b'{"asset":{"version":"2.0"},"extras":[' + b"[]," * 400000 + b"[]]}", "gltf")
     case("many-materials", b'{"asset":{"version":"2.0"},"materials":[' + b"{}," * 300000 + b"{}]}", "gltf")
+    # What takes far more memory than the text.
+    def filled(name, path, element):
+        document = copy.deepcopy(DOCUMENT)
+        at = document
+        for part in path[:-1]:
+            at = at[part]
+        at[path[-1]] = "@"
+        text = good.gltf_text(document, DATA)
+        case("filled-" + name, text.replace(b'"@"', b"[" + (element + b",") * (8000000 // (len(element) + 1)) + element + b"]"), "gltf")
+    filled("material-extension", ["materials", 0, "extensions", "KHR_materials_ior"], b"[]")
+    filled("targets", ["meshes", 0, "primitives", 0, "targets"], b"{}")
+    filled("primitives", ["meshes", 0, "primitives"], b'{"attributes":{}}')
 
 
 def gltf_accessors():

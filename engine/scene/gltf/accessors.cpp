@@ -19,59 +19,21 @@ using nlohmann::json;
 /** An accessor that has no data is all zeros: a count alone must not fill the memory. */
 constexpr std::size_t maximumCountWithoutData = std::size_t(1) << 24;
 
-/** tinygltf takes 1.0 for no integer, and cuts an extension's integers to 32 bits: all numbers are given to
- * it as the kind that it reads right. */
-void adaptNumbers(json& value, bool isInExtension = false) {
-    constexpr double exactIntegers = 9007199254740992.0;  // 2^53
-    if (value.is_object()) {
-        for (auto& [key, member] : value.items()) adaptNumbers(member, isInExtension || key == "extensions");
-    } else if (value.is_array()) {
-        for (json& element : value) adaptNumbers(element, isInExtension);
-    } else if (isInExtension && value.is_number()) {
-        value = value.get<double>();
-    } else if (value.is_number_float()) {
-        const double x = value.get<double>();
-        if (x == std::floor(x) && std::abs(x) <= exactIntegers) value = std::int64_t(x);
-    }
-}
-
-/** tinygltf gets the document without what it would load or decode by itself, and without what is not read
- * here. */
-tinygltf::Model parseModel(const Container& container) {
-    json document = json::object();
-    for (const auto& [member, value] : container.document.items()) {
-        const bool isLeftOut = member == "buffers" || member == "images" || member == "animations" ||
-                               member == "skins" || member == "extras";
-        if (!isLeftOut) document[member] = value;
-    }
-    adaptNumbers(document);
-    const std::string text = document.dump();
-    tinygltf::TinyGLTF parser;
-    parser.RemoveImageLoader();
-    tinygltf::Model model;
-    std::string error, warning;
-    if (!parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(), unsigned(text.size()), "")) {
-        std::replace(error.begin(), error.end(), '\n', ' ');
-        throw InputError(container.file, "", "is no glTF: " + error, "check the file with a glTF validator");
-    }
-    return model;
-}
-
-double component(const std::byte* from, int type) {
+double component(const std::byte* from, Component type) {
     const auto as = [from](auto value) {
         std::memcpy(&value, from, sizeof value);
         return double(value);
     };
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
+        case Component::Byte:
             return as(std::int8_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case Component::UnsignedByte:
             return as(std::uint8_t());
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
+        case Component::Short:
             return as(std::int16_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case Component::UnsignedShort:
             return as(std::uint16_t());
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        case Component::UnsignedInt:
             return as(std::uint32_t());
         default:
             return as(float());
@@ -79,23 +41,19 @@ double component(const std::byte* from, int type) {
 }
 
 /** glTF 2.0, section 3.11: what 1 is stored as, or 0 for a type that is not normalized. */
-double normalizedOne(int type) {
+double normalizedOne(Component type) {
     switch (type) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
+        case Component::Byte:
             return 127;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case Component::UnsignedByte:
             return 255;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
+        case Component::Short:
             return 32767;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case Component::UnsignedShort:
             return 65535;
         default:
             return 0;
     }
-}
-
-std::size_t sizeOfComponent(int type) {
-    return std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type)));
 }
 
 /** Whether `count` elements of `size`, `stride` apart, lie in `available` from `offset` on. No sum here
@@ -107,7 +65,10 @@ bool fits(std::size_t offset, std::size_t count, std::size_t stride, std::size_t
 
 }  // namespace
 
-Asset::Asset(Container container) : container_(std::move(container)), model_(parseModel(container_)) {
+Asset::Asset(Container container)
+    : container_(std::move(container)),
+      views_(bufferViewsOf(container_.document)),
+      accessors_(accessorsOf(container_.document)) {
     bytes_ = container_.size;
     const auto found = container_.document.find("buffers");
     if (found == container_.document.end()) return;
@@ -147,11 +108,11 @@ Asset::Asset(Container container) : container_(std::move(container)), model_(par
 
 std::vector<std::string> Asset::misaligned() const {
     std::vector<std::string> places;
-    for (std::size_t i = 0; i < model_.accessors.size(); ++i) {
-        const tinygltf::Accessor& accessor = model_.accessors[i];
+    for (std::size_t i = 0; i < accessors_.size(); ++i) {
+        const Accessor& accessor = accessors_[i];
         if (accessor.bufferView < 0) continue;
-        const tinygltf::BufferView& view = model_.bufferViews[std::size_t(accessor.bufferView)];
-        const std::size_t size = sizeOfComponent(accessor.componentType);
+        const BufferView& view = views_[std::size_t(accessor.bufferView)];
+        const std::size_t size = sizeOf(accessor.component);
         if (accessor.byteOffset % size != 0 || view.byteOffset % size != 0 || view.byteStride % size != 0)
             places.push_back(fmt::format("accessors[{}]", i));
     }
@@ -163,7 +124,7 @@ std::filesystem::path Asset::folder() const {
 }
 
 std::span<const std::byte> Asset::bufferView(int index) const {
-    const tinygltf::BufferView& view = model_.bufferViews[std::size_t(index)];
+    const BufferView& view = views_[std::size_t(index)];
     const std::span<const std::byte> buffer = buffers_[std::size_t(view.buffer)];
     if (view.byteOffset + view.byteLength > buffer.size()) {
         throw InputError(file(), fmt::format("bufferViews[{}]", index),
@@ -175,7 +136,7 @@ std::span<const std::byte> Asset::bufferView(int index) const {
 }
 
 struct Asset::Layout {
-    const tinygltf::Accessor& accessor;
+    const Accessor& accessor;
     std::size_t components;
     std::size_t componentSize;
     std::size_t size;  ///< bytes of an element
@@ -185,22 +146,15 @@ struct Asset::Layout {
 };
 
 Asset::Layout Asset::layout(int index) const {
-    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
+    const Accessor& accessor = accessors_[std::size_t(index)];
     const auto refuse = [&](const char* member, std::string fault, const char* remedy) {
         throw InputError(file(), fmt::format("accessors[{}]{}", index, member), std::move(fault), remedy);
     };
-    Layout layout{accessor,
-                  std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type))),
-                  sizeOfComponent(accessor.componentType),
-                  0,
-                  0,
-                  {},
-                  {},
-                  {}};
+    Layout layout{accessor, std::size_t(accessor.components), sizeOf(accessor.component), 0, 0, {}, {}, {}};
     layout.size = layout.stride = layout.components * layout.componentSize;
     if (accessor.bufferView >= 0) {
         const auto bytes = bufferView(accessor.bufferView);
-        const std::size_t viewStride = model_.bufferViews[std::size_t(accessor.bufferView)].byteStride;
+        const std::size_t viewStride = views_[std::size_t(accessor.bufferView)].byteStride;
         if (viewStride != 0) layout.stride = viewStride;
         if (layout.stride < layout.size) {
             refuse("", fmt::format("has elements of {} bytes every {}", layout.size, layout.stride),
@@ -216,27 +170,31 @@ Asset::Layout Asset::layout(int index) const {
     } else if (accessor.count > maximumCountWithoutData) {
         refuse(".count", fmt::format("is {} without any data", accessor.count), "give it a bufferView");
     }
-    if (!accessor.sparse.isSparse) return layout;
-    const auto& sparse = accessor.sparse;
-    const auto count = std::size_t(sparse.count);
-    const auto indexBytes = bufferView(sparse.indices.bufferView),
-               valueBytes = bufferView(sparse.values.bufferView);
-    const auto indexOffset = std::size_t(sparse.indices.byteOffset),
-               valueOffset = std::size_t(sparse.values.byteOffset);
-    const std::size_t indexSize = sizeOfComponent(sparse.indices.componentType);
-    if (!fits(indexOffset, count, indexSize, indexSize, indexBytes.size()) ||
-        !fits(valueOffset, count, layout.size, layout.size, valueBytes.size())) {
+    if (!accessor.sparse) return layout;
+    const Sparse& sparse = *accessor.sparse;
+    const std::size_t count = sparse.count;
+    const auto indexBytes = bufferView(sparse.indexView), valueBytes = bufferView(sparse.valueView);
+    const std::size_t indexSize = sizeOf(sparse.indexType);
+    if (!fits(sparse.indexOffset, count, indexSize, indexSize, indexBytes.size()) ||
+        !fits(sparse.valueOffset, count, layout.size, layout.size, valueBytes.size())) {
         refuse(".sparse.count",
                fmt::format("is {}: the elements run over the end of their buffer view", count),
                "keep the elements within the buffer view");
     }
-    layout.sparseIndices = indexBytes.subspan(indexOffset);
-    layout.sparseValues = valueBytes.subspan(valueOffset);
+    layout.sparseIndices = indexBytes.subspan(sparse.indexOffset);
+    layout.sparseValues = valueBytes.subspan(sparse.valueOffset);
     return layout;
 }
 
 bool Asset::isPacked(const Layout& layout) {
-    return !layout.base.empty() && layout.stride == layout.size && !layout.accessor.sparse.isSparse;
+    return !layout.base.empty() && layout.stride == layout.size && !layout.accessor.sparse;
+}
+
+std::size_t Asset::dataBytes(int index) const {
+    const Accessor& accessor = this->accessor(index);
+    return accessor.bufferView < 0
+               ? 0
+               : accessor.count * std::size_t(accessor.components) * sizeOf(accessor.component);
 }
 
 void Asset::check(int accessor) const {
@@ -245,19 +203,19 @@ void Asset::check(int accessor) const {
 
 template <class Store>
 void Asset::read(int index, const Layout& layout, Store&& store) const {
-    const tinygltf::Accessor& accessor = layout.accessor;
+    const Accessor& accessor = layout.accessor;
     const auto readElement = [&](std::size_t element, const std::byte* from) {
         for (std::size_t c = 0; c < layout.components; ++c) {
-            store(element, c, component(from + c * layout.componentSize, accessor.componentType));
+            store(element, c, component(from + c * layout.componentSize, accessor.component));
         }
     };
     if (!layout.base.empty()) {
         for (std::size_t i = 0; i < accessor.count; ++i) readElement(i, &layout.base[i * layout.stride]);
     }
-    if (!accessor.sparse.isSparse) return;
-    const int indexType = accessor.sparse.indices.componentType;
-    const std::size_t indexSize = sizeOfComponent(indexType);
-    for (std::size_t i = 0; i < std::size_t(accessor.sparse.count); ++i) {
+    if (!accessor.sparse) return;
+    const Component indexType = accessor.sparse->indexType;
+    const std::size_t indexSize = sizeOf(indexType);
+    for (std::size_t i = 0; i < accessor.sparse->count; ++i) {
         const double element = component(&layout.sparseIndices[i * indexSize], indexType);
         if (!(element < double(accessor.count))) {
             throw InputError(
@@ -270,14 +228,17 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
 }
 
 void Asset::checkType(int index, int components, const std::string& place) const {
-    const int type = components == 1    ? TINYGLTF_TYPE_SCALAR
-                     : components == 16 ? TINYGLTF_TYPE_MAT4
-                                        : components;  // VEC2 to VEC4 are named by their numbers
-    if (model_.accessors[std::size_t(index)].type == type) return;
+    const Accessor& accessor = accessors_[std::size_t(index)];
+    if (accessor.components == components && accessor.isMatrix == (components == 16)) return;
     throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
                      "give an accessor of " + (components == 1    ? std::string("SCALAR")
                                                : components == 16 ? std::string("MAT4")
                                                                   : fmt::format("VEC{}", components)));
+}
+
+void Asset::refuseElement(int index, const std::string& place, std::size_t element) const {
+    throw InputError(file(), place, fmt::format("element {} of accessor {} is not finite", element, index),
+                     "give finite numbers");
 }
 
 std::vector<float> Asset::floats(int index, int components, const std::string& place) const {
@@ -289,35 +250,54 @@ std::vector<float> Asset::floats(int index, int components, const std::string& p
 }
 
 void Asset::floats(int index, int components, const std::string& place, std::span<float> values) const {
-    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
+    const Accessor& accessor = accessors_[std::size_t(index)];
     checkType(index, components, place);
-    const double one = accessor.normalized ? normalizedOne(accessor.componentType) : 0;
+    const double one = accessor.isNormalized ? normalizedOne(accessor.component) : 0;
     const Layout from = layout(index);
-    const auto refuse = [&](std::size_t element) {
-        throw InputError(file(), place,
-                         fmt::format("element {} of accessor {} is not finite", element, index),
-                         "give finite numbers");
-    };
-    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT && isPacked(from)) {
+    if (accessor.component == Component::Float && isPacked(from)) {
         std::memcpy(values.data(), from.base.data(), values.size_bytes());
         const auto wrong =
             std::find_if_not(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
-        if (wrong != values.end()) refuse(std::size_t(wrong - values.begin()) / std::size_t(components));
+        if (wrong != values.end())
+            refuseElement(index, place, std::size_t(wrong - values.begin()) / std::size_t(components));
         return;
     }
     std::fill(values.begin(), values.end(), 0.0f);
     read(index, from, [&](std::size_t element, std::size_t c, double value) {
-        if (!std::isfinite(value)) refuse(element);
+        if (!std::isfinite(value)) refuseElement(index, place, element);
         values[element * std::size_t(components) + c] = float(one > 0 ? std::max(value / one, -1.0) : value);
     });
 }
 
+std::vector<float> Asset::floats(int index, int components, const std::string& place,
+                                 std::span<const std::uint32_t> chosen) const {
+    const auto width = std::size_t(components);
+    const Layout from = layout(index);
+    std::vector<float> values(chosen.size() * width);
+    if (from.accessor.sparse) {  // read whole: its elements lie in two places
+        const std::vector<float> all = floats(index, components, place);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = all[chosen[i / width] * width + i % width];
+        return values;
+    }
+    checkType(index, components, place);
+    if (from.base.empty()) return values;
+    const double one = from.accessor.isNormalized ? normalizedOne(from.accessor.component) : 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::byte* const element = &from.base[chosen[i / width] * from.stride];
+        const double value = component(element + i % width * from.componentSize, from.accessor.component);
+        if (!std::isfinite(value)) refuseElement(index, place, chosen[i / width]);
+        values[i] = float(one > 0 ? std::max(value / one, -1.0) : value);
+    }
+    return values;
+}
+
 void Asset::checkIndices(int index, const std::string& place) const {
-    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
-    const bool isUnsigned = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-                            accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                            accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (accessor.type != TINYGLTF_TYPE_SCALAR || !isUnsigned) {
+    const Accessor& accessor = accessors_[std::size_t(index)];
+    const bool isUnsigned = accessor.component == Component::UnsignedByte ||
+                            accessor.component == Component::UnsignedShort ||
+                            accessor.component == Component::UnsignedInt;
+    if (accessor.components != 1 || !isUnsigned) {
         throw InputError(file(), place, fmt::format("accessor {} has the wrong type", index),
                          "give a SCALAR accessor of unsigned integers");
     }
@@ -326,10 +306,10 @@ void Asset::checkIndices(int index, const std::string& place) const {
 
 std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) const {
     checkIndices(index, place);
-    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(index)];
+    const Accessor& accessor = accessors_[std::size_t(index)];
     const Layout from = layout(index);
     std::vector<std::uint32_t> values(accessor.count);
-    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT && isPacked(from)) {
+    if (accessor.component == Component::UnsignedInt && isPacked(from)) {
         std::memcpy(values.data(), from.base.data(), values.size() * sizeof(std::uint32_t));
         return values;
     }

@@ -1,7 +1,7 @@
 #pragma once
 /** @file The numbers in a glTF file's buffers. */
 #include "engine/scene/gltf/container.hpp"
-#include "engine/scene/gltf/tinygltf.hpp"
+#include "engine/scene/gltf/lists.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
-#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
-/** A document on its way to a Scene: container, typed model, buffers in memory. */
+/** A document on its way to a Scene: container, typed lists, buffers in memory. */
 class Asset {
 public:
     /** Takes a container whose schema is checked. Loads the buffers. Throws InputError. */
@@ -23,7 +22,7 @@ public:
 
     const std::string& file() const { return container_.file; }
     const nlohmann::json& document() const { return container_.document; }
-    const tinygltf::Model& model() const { return model_; }
+    const Accessor& accessor(int index) const { return accessors_[std::size_t(index)]; }
     std::filesystem::path folder() const;
 
     /** The bytes of a buffer view; checked against its buffer. */
@@ -35,34 +34,42 @@ public:
     std::vector<float> floats(int accessor, int components, const std::string& place) const;
     /** The same, into memory for as many. */
     void floats(int accessor, int components, const std::string& place, std::span<float> values) const;
+    /** The elements `chosen`, which are below the accessor's count and ascend. */
+    std::vector<float> floats(int accessor, int components, const std::string& place,
+                              std::span<const std::uint32_t> chosen) const;
     /** An accessor of unsigned integers. */
     std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;
     /** Places of accessors whose components do not lie at multiples of their size, as glTF wants it. */
     std::vector<std::string> misaligned() const;
     /** Bytes of the file and of its buffers: what it may unfold to is in proportion. */
     std::size_t bytes() const { return bytes_; }
+    /** Bytes that the document takes in memory. */
+    std::size_t documentBytes() const { return container_.documentBytes; }
+    /** Bytes of the buffers that an accessor reads; 0 for one without data. */
+    std::size_t dataBytes(int accessor) const;
     /** Refuses an accessor whose elements do not all lie in its buffers: its count may then be trusted. */
     void check(int accessor) const;
     /** The same for one that must hold indices. */
     void checkIndices(int accessor, const std::string& place) const;
-    std::size_t count(int accessor) const { return model_.accessors[std::size_t(accessor)].count; }
+    std::size_t count(int accessor) const { return accessors_[std::size_t(accessor)].count; }
 
 private:
     struct Layout;
     /** Where an accessor's elements lie, all within their buffers. */
     Layout layout(int accessor) const;
     void checkType(int accessor, int components, const std::string& place) const;
+    [[noreturn]] void refuseElement(int accessor, const std::string& place, std::size_t element) const;
     /** Whether the elements lie as they are wanted, one after the other. */
     static bool isPacked(const Layout& layout);
     template <class Store>
     void read(int accessor, const Layout& layout, Store&& store) const;
 
     Container container_;
-    tinygltf::Model model_;
+    std::vector<BufferView> views_;
+    std::vector<Accessor> accessors_;
     std::list<std::vector<std::byte>> owned_;          ///< of buffers that are not in the file
     std::vector<std::span<const std::byte>> buffers_;  ///< into owned_ or the file
     std::size_t bytes_ = 0;
 };
 
 }  // namespace helio::gltf
-#pragma GCC visibility pop

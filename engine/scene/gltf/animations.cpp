@@ -29,6 +29,8 @@ public:
         Animation animation;
         animation.name = from.value("name", "");
         const json& samplers = from["samplers"];
+        memory_.take(place + ".channels", from["channels"].size() * sizeof(AnimationChannel), 0);
+        animation.channels.reserve(from["channels"].size());
         for (std::size_t c = 0; c < from["channels"].size(); ++c) {
             const json& channel = from["channels"][c];
             const std::string channelPlace = fmt::format("{}.channels[{}]", place, c);
@@ -108,7 +110,7 @@ private:
 
     std::vector<float> numbers(int accessor, int components, const std::string& place) {
         asset_.check(accessor);
-        memory_.take(place, asset_.count(accessor) * std::size_t(components) * sizeof(float), 0);
+        memory_.takeFor(accessor, place, asset_.count(accessor) * std::size_t(components) * sizeof(float), 0);
         return asset_.floats(accessor, components, place);
     }
 
@@ -122,6 +124,8 @@ private:
 void buildAnimations(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
     const auto found = asset.document().find("animations");
     if (found == asset.document().end()) return;
+    memory.take("animations", found->size() * sizeof(Animation), 0);
+    scene.animations.reserve(found->size());
     AnimationBuilder builder(asset, memory, scene);
     for (std::size_t i = 0; i < found->size(); ++i)
         scene.animations.push_back(builder.build((*found)[i], fmt::format("animations[{}]", i)));

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
 /** Extensions whose meaning the scene model holds, in alphabetical order. */
@@ -21,9 +20,10 @@ bool isSupported(const std::string& extension);
 /** Fills Scene::meshes and variants. */
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene);
 
-/** Weights of a mesh or of a node, one per morph target of the mesh. Throws InputError for another number. */
-std::vector<float> morphWeights(const Asset& asset, const std::vector<double>& weights,
-                                const tinygltf::Mesh& mesh, const std::string& place);
+/** Weights of a mesh or of a node, one per morph target of the mesh, or none. Throws InputError for another
+ * number of them. */
+std::vector<float> morphWeights(const Asset& asset, const nlohmann::json& object, std::size_t targets,
+                                const std::string& place);
 
 /** Fills Scene::skins; after the meshes and nodes. */
 void buildSkins(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
@@ -33,7 +33,8 @@ void buildAnimations(const Asset& asset, MemoryBudget& memory, helio::Scene& sce
 
 /** Fills Scene::materials, textures and images: the materials in `used` with their textures, the others
  * without. */
-void buildMaterials(const Asset& asset, const std::set<int>& used, LoadMonitor& monitor, helio::Scene& scene);
+void buildMaterials(const Asset& asset, const std::set<int>& used, MemoryBudget& memory, LoadMonitor& monitor,
+                    helio::Scene& scene);
 
 /** Fills Scene::nodes, roots, cameras and lights. Refuses cycles and nodes with two parents. */
 void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene);
@@ -57,4 +58,3 @@ private:
 };
 
 }  // namespace helio::gltf
-#pragma GCC visibility pop

@@ -1,70 +1,28 @@
 #include "engine/scene/gltf/container.hpp"
 
 #include "engine/image/read_file.hpp"
+#include "engine/scene/gltf/json_reader.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <string_view>
 
 namespace helio::gltf {
 namespace {
 
-constexpr int maximumNesting = 100;
-
-/** Parsers of JSON, and what walks the result, recurse; a deep file must not overflow their stack. */
-void checkNesting(const std::string& file, std::string_view text) {
-    int depth = 0;
-    bool isInString = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (isInString) {
-            if (c == '\\') ++i;
-            if (c == '"') isInString = false;
-        } else if (c == '"') {
-            isInString = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > maximumNesting) {
-                throw InputError(file, fmt::format("byte {}", i), "its JSON is nested too deeply",
-                                 fmt::format("nest at most {} levels", maximumNesting));
-            }
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-}
-
-/** What the parser says is wrong, without its number and its place, in one line of printable ASCII: it quotes
- * the file, which may hold anything. */
-std::string reasonOf(const nlohmann::json::parse_error& error) {
-    std::string_view message = error.what();
-    if (const auto end = message.find(": "); end != message.npos) message.remove_prefix(end + 2);
-    std::string reason;
-    for (const char c : message.substr(0, 200)) reason.push_back(c >= ' ' && c <= '~' ? c : '?');
-    return reason;
-}
-
-nlohmann::json parse(const std::string& file, std::string_view text) {
-    checkNesting(file, text);
-    try {
-        return nlohmann::json::parse(text);
-    } catch (const nlohmann::json::parse_error& error) {
-        const std::size_t byte = std::min(error.byte, text.size());
-        const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(byte), '\n');
-        throw InputError(file, fmt::format("line {}, byte {}", lines + 1, error.byte),
-                         "is no valid JSON: " + reasonOf(error), "write the file again; it may be cut off");
-    } catch (const nlohmann::json::exception&) {  // a number beyond double's range
-        throw InputError(file, "", "its JSON has a number that is out of range", "write the file again");
-    }
-}
-
 std::uint32_t littleEndian32(std::span<const std::byte> bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 4; i-- > 0;) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
     return value;
+}
+
+void parseInto(Container& container, std::span<const std::byte> text) {
+    Json json = readJson(container.file, {reinterpret_cast<const char*>(text.data()), text.size()});
+    container.document = std::move(json.document);
+    container.documentBytes = json.bytes;
 }
 
 /** A GLB's header is magic, version, length; then chunks of length, type, data: JSON first, BIN second. */
@@ -93,8 +51,7 @@ void parseBinary(Container& container) {
         const auto content = bytes.subspan(at, size);
         if (index == 0) {
             if (type != jsonChunk) fail("first chunk", "is no JSON chunk");
-            container.document =
-                parse(container.file, {reinterpret_cast<const char*>(content.data()), content.size()});
+            parseInto(container, content);
         } else if (index == 1 && type == binChunk) {
             container.binaryChunk = content;
             container.hasBinaryChunk = true;
@@ -117,7 +74,7 @@ Container readContainer(const std::string& file) {
     if (text.starts_with("glTF")) {
         parseBinary(container);
     } else {
-        container.document = parse(file, text);
+        parseInto(container, container.bytes);
         container.bytes = {};
     }
     return container;

@@ -13,10 +13,11 @@ namespace helio::gltf {
 struct Container {
     std::string file;  ///< as the user gave it, for messages
     std::vector<std::byte> bytes;
-    std::size_t size = 0;  ///< of the file, kept when `bytes` is let go
+    std::size_t size = 0;                    ///< of the file, kept when `bytes` is let go
     std::span<const std::byte> binaryChunk;  ///< of a GLB, into bytes
     bool hasBinaryChunk = false;
     nlohmann::json document;
+    std::size_t documentBytes = 0;  ///< that the document takes
 };
 
 /** Reads a file; GLB by its first bytes, whatever it is called. Throws InputError. */

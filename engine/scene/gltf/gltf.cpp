@@ -43,35 +43,16 @@ bool isSupported(const std::string& extension) {
 namespace {
 
 void checkExtensions(const Container& container, helio::Scene& scene) {
-    const nlohmann::json none = nlohmann::json::array();
-    for (const auto& extension : container.document.value("extensionsRequired", none)) {
+    for (const auto& extension : listOf(container.document, "extensionsRequired")) {
         const auto& name = extension.get_ref<const std::string&>();
         if (!isSupported(name)) {
             throw InputError(container.file, "extensionsRequired", name + " is not supported",
                              "export the file without " + name);
         }
     }
-    for (const auto& extension : container.document.value("extensionsUsed", none)) {
+    for (const auto& extension : listOf(container.document, "extensionsUsed")) {
         const auto& name = extension.get_ref<const std::string&>();
         if (!isSupported(name)) skip(scene, name, "is not supported");
-    }
-}
-
-/** A material or node takes kilobytes, and a file could have one every three bytes: "{},". What such files
- * would take is refused before it is taken. */
-void checkProportion(const Container& container) {
-    // Bytes that an element takes at most, in tinygltf's model, the document and the scene.
-    constexpr std::size_t material = 4500, other = 1200;
-    constexpr std::size_t most = std::size_t(160) << 20, perByte = 24;
-    std::size_t bytes = 0;
-    for (const auto& [member, elements] : container.document.items()) {
-        if (elements.is_array()) bytes += elements.size() * (member == "materials" ? material : other);
-        if (bytes > most + container.size * perByte) {
-            throw InputError(container.file, member,
-                             fmt::format("has {} elements, out of proportion to the file's {} bytes",
-                                         elements.size(), container.size),
-                             "leave out elements that say nothing");
-        }
     }
 }
 
@@ -96,7 +77,6 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     scene.name = file;
     gltf::Container container = gltf::readContainer(file);
     gltf::checkSchema(file, container.document);
-    gltf::checkProportion(container);
     gltf::checkExtensions(container, scene);
     extras::check(file, container.document);
     monitor.report("buffers", 0);
@@ -109,7 +89,7 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     gltf::buildSkins(asset, memory, scene);
     gltf::buildAnimations(asset, memory, scene);
     if (!options.variant.empty()) chooseVariant(scene, options.variant);
-    gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), monitor, scene);
+    gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), memory, monitor, scene);
     gltf::buildEnvironment(asset, memory, monitor, scene);
     return scene;
 } catch (const std::bad_alloc&) {

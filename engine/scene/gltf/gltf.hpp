@@ -1,7 +1,7 @@
 #pragma once
 /** @file
  * glTF 2.0 and GLB import, in steps that each refuse what the next could not bear:
- * container (file, chunks, JSON text), schema (types, ranges, every index), tinygltf (typed model), buffers
+ * container (file, chunks, JSON text), schema (types, ranges, every index), lists (typed), buffers
  * and accessors (sizes, offsets), then meshes, materials, images, nodes.
  */
 #include "engine/scene/load_monitor.hpp"

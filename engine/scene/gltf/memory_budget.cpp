@@ -1,10 +1,15 @@
 #include "engine/scene/gltf/memory_budget.hpp"
 
+#include "engine/scene/gltf/json_reader.hpp"
+
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
 namespace helio::gltf {
+
+MemoryBudget::MemoryBudget(const Asset& asset)
+    : asset_(asset), most_(maximumUnfolded(asset.bytes())), used_(asset.documentBytes()) {}
 
 void MemoryBudget::take(const std::string& place, std::size_t kept, std::size_t transient) {
     if (kept > most_ || transient > most_ || used_ + kept + transient > most_) {
@@ -15,6 +20,15 @@ void MemoryBudget::take(const std::string& place, std::size_t kept, std::size_t 
             "let fewer things share an accessor, and give accessors data");
     }
     used_ += kept;
+}
+
+void MemoryBudget::takeFor(int accessor, const std::string& place, std::size_t kept, std::size_t transient) {
+    const std::size_t data = asset_.dataBytes(accessor);
+    if (data > 0 && read_ + data <= asset_.bytes()) {
+        read_ += data;
+    } else {
+        take(place, kept, transient);
+    }
 }
 
 }  // namespace helio::gltf

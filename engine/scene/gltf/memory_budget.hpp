@@ -5,25 +5,26 @@
 #include <cstddef>
 #include <string>
 
-#pragma GCC visibility push(hidden)  // as tinygltf's types, which these hold
 namespace helio::gltf {
 
-/** Primitives may share an accessor, and an accessor need have no data, so that a small file unfolds to any
- * size. What is unfolded stays in proportion to what was read: without sharing the factor is at most 12 (a
- * strip of one-byte indices); the constant leaves room for small files that share on purpose. */
+/** Primitives may share an accessor, accessors a buffer view, and an accessor need have no data, so that a
+ * small file unfolds to any size. What is unfolded beyond each byte's first use stays within
+ * maximumUnfolded(). */
 class MemoryBudget {
 public:
-    explicit MemoryBudget(const Asset& asset)
-        : asset_(asset), most_(asset.bytes() * 32 + (std::size_t(192) << 20)) {}
+    explicit MemoryBudget(const Asset& asset);
 
     /** Takes memory that stays, and asks for some that goes again. Refuses before either is there. */
     void take(const std::string& place, std::size_t kept, std::size_t transient);
+    /** The same for what comes of an accessor's data: free until accessors have read as many bytes as there
+     * are. */
+    void takeFor(int accessor, const std::string& place, std::size_t kept, std::size_t transient);
 
 private:
     const Asset& asset_;
     std::size_t most_;
-    std::size_t used_ = 0;
+    std::size_t used_;
+    std::size_t read_ = 0;  ///< bytes of accessors with data, so far
 };
 
 }  // namespace helio::gltf
-#pragma GCC visibility pop

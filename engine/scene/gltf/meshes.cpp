@@ -6,17 +6,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace helio::gltf {
 namespace {
 
+using nlohmann::json;
+
+Mode modeOf(const json& primitive) {
+    return Mode(integerOr(primitive, "mode", int(Mode::Triangles)));
+}
+
 /** glTF 2.0, section 3.7.2.1: three indices per triangle of a list, strip or fan. */
-std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, int mode) {
-    if (mode == TINYGLTF_MODE_TRIANGLES) return v;
+std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, Mode mode) {
+    if (mode == Mode::Triangles) return v;
     std::vector<std::uint32_t> result;
     result.reserve(v.size() < 3 ? 0 : (v.size() - 2) * 3);
     for (std::size_t i = 0; i + 2 < v.size(); ++i) {
-        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+        if (mode == Mode::TriangleStrip) {
             result.insert(result.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
         } else {
             result.insert(result.end(), {v[i + 1], v[i + 2], v[0]});
@@ -69,19 +76,21 @@ public:
     PrimitiveBuilder(const Asset& asset, helio::Scene& scene, std::string place, MemoryBudget& memory)
         : asset_(asset), scene_(scene), place_(std::move(place)), memory_(memory) {}
 
-    Primitive build(const tinygltf::Primitive& from) {
+    Primitive build(const json& from) {
         Primitive primitive;
-        primitive.material = from.material;
-        const auto position = from.attributes.find("POSITION");
-        if (position == from.attributes.end()) {
+        primitive.material = integerOr(from, "material", -1);
+        const json& attributes = from["attributes"];
+        const auto found = attributes.find("POSITION");
+        if (found == attributes.end()) {
             skip(scene_, place_, "it has no POSITION");
             return primitive;
         }
-        asset_.check(position->second);
-        size_ = asset_.count(position->second);
+        const int position = found->get<int>();
+        asset_.check(position);
+        size_ = asset_.count(position);
         readIndices(from, primitive);
         keepUsedVertices(primitive);
-        primitive.positions = attribute<glm::vec3>("POSITION", position->second);
+        primitive.positions = attribute<glm::vec3>("POSITION", position);
         readAttributes(from, primitive);
         fixNormals(primitive);
         fixTangents(primitive);
@@ -93,19 +102,16 @@ private:
      * than half of them, only those are kept, in their order. */
     void keepUsedVertices(Primitive& primitive) {
         kept_.clear();
-        std::vector<bool> isUsed(size_, false);
-        for (const std::uint32_t index : primitive.indices) isUsed[index] = true;
-        const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), true));
-        if (used >= size_ - used) return;
-        memory_.take(place_, 0, size_ * sizeof(std::uint32_t) + used * sizeof(std::uint32_t));
-        std::vector<std::uint32_t> place(size_);
-        kept_.reserve(used);
-        for (std::size_t i = 0; i < size_; ++i) {
-            if (!isUsed[i]) continue;
-            place[i] = std::uint32_t(kept_.size());
-            kept_.push_back(std::uint32_t(i));
+        memory_.take(place_, 0, primitive.indices.size() * sizeof(std::uint32_t));
+        kept_ = primitive.indices;
+        std::sort(kept_.begin(), kept_.end());
+        kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
+        if (kept_.size() >= size_ - kept_.size()) {
+            kept_.clear();
+            return;
         }
-        for (std::uint32_t& index : primitive.indices) index = place[index];
+        for (std::uint32_t& index : primitive.indices)
+            index = std::uint32_t(std::lower_bound(kept_.begin(), kept_.end(), index) - kept_.begin());
     }
 
     template <class Vector>
@@ -122,22 +128,22 @@ private:
         constexpr auto length = std::size_t(Vector::length());
         static_assert(sizeof(Vector) == Vector::length() * sizeof(float));
         if (kept_.empty()) {
-            memory_.take(place, count * sizeof(Vector), 0);
+            memory_.takeFor(accessor, place, count * sizeof(Vector), 0);
             std::vector<Vector> result(count);
             asset_.floats(accessor, int(length), place, {&result[0][0], count * length});
             return result;
         }
-        memory_.take(place, count * sizeof(Vector), size_ * length * sizeof(float));
-        const std::vector<float> values = asset_.floats(accessor, int(length), place);
+        memory_.take(place, count * sizeof(Vector), count * sizeof(Vector));
+        const std::vector<float> values = asset_.floats(accessor, int(length), place, kept_);
         std::vector<Vector> result(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t c = 0; c < length; ++c) result[i][int(c)] = values[kept_[i] * length + c];
-        }
+        std::memcpy(&result[0][0], values.data(), values.size() * sizeof(float));
         return result;
     }
 
-    void readAttributes(const tinygltf::Primitive& from, Primitive& primitive) {
-        for (const auto& [name, accessor] : from.attributes) {
+    void readAttributes(const json& from, Primitive& primitive) {
+        const json& attributes = from["attributes"];
+        for (const auto& [name, value] : attributes.items()) {
+            const int accessor = value.get<int>();
             if (name == "POSITION") continue;
             if (name == "NORMAL") {
                 primitive.normals = attribute<glm::vec3>(name, accessor);
@@ -152,42 +158,46 @@ private:
         }
         for (int set = 0;; ++set) {
             const std::string name = fmt::format("TEXCOORD_{}", set);
-            const auto found = from.attributes.find(name);
-            if (found == from.attributes.end()) break;
-            primitive.texcoords.push_back(attribute<glm::vec2>(name, found->second));
+            const auto found = attributes.find(name);
+            if (found == attributes.end()) break;
+            primitive.texcoords.push_back(attribute<glm::vec2>(name, found->get<int>()));
         }
         const bool hasSkins = asset_.document().contains("skins");
-        for (int set = 0; hasSkins && readInfluences(from, set, primitive); ++set) {
+        for (int set = 0; hasSkins && readInfluences(attributes, set, primitive); ++set) {
         }
-        for (std::size_t t = 0; t < from.targets.size(); ++t)
-            primitive.targets.push_back(target(from.targets[t], fmt::format("targets[{}].", t)));
+        const json& targets = listOf(from, "targets");
+        memory_.take(place_ + ".targets", targets.size() * sizeof(MorphTarget), 0);
+        primitive.targets.reserve(targets.size());
+        for (std::size_t t = 0; t < targets.size(); ++t)
+            primitive.targets.push_back(target(targets[t], fmt::format("targets[{}].", t)));
     }
 
     /** Joints and weights of a set, if the primitive has it. */
-    bool readInfluences(const tinygltf::Primitive& from, int set, Primitive& primitive) const {
+    bool readInfluences(const json& attributes, int set, Primitive& primitive) const {
         const std::string jointsName = fmt::format("JOINTS_{}", set),
                           weightsName = fmt::format("WEIGHTS_{}", set);
-        const auto joints = from.attributes.find(jointsName), weights = from.attributes.find(weightsName);
-        if ((joints == from.attributes.end()) != (weights == from.attributes.end())) {
+        const auto joints = attributes.find(jointsName), weights = attributes.find(weightsName);
+        if ((joints == attributes.end()) != (weights == attributes.end())) {
             throw InputError(asset_.file(), place_ + ".attributes",
                              fmt::format("has one of {} and {}", jointsName, weightsName),
                              "give both, or none");
         }
-        if (joints == from.attributes.end()) return false;
-        const int type = asset_.model().accessors[std::size_t(joints->second)].componentType;
-        if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) {
+        if (joints == attributes.end()) return false;
+        const Component type = asset_.accessor(joints->get<int>()).component;
+        if (type != Component::UnsignedByte && type != Component::UnsignedShort) {
             throw InputError(asset_.file(), place_ + ".attributes." + jointsName, "has the wrong type",
                              "give unsigned bytes or shorts");
         }
-        const std::vector<glm::vec4> numbers = attribute<glm::vec4>(jointsName, joints->second);
+        const std::vector<glm::vec4> numbers = attribute<glm::vec4>(jointsName, joints->get<int>());
         primitive.joints.emplace_back(numbers.begin(), numbers.end());
-        primitive.weights.push_back(attribute<glm::vec4>(weightsName, weights->second));
+        primitive.weights.push_back(attribute<glm::vec4>(weightsName, weights->get<int>()));
         return true;
     }
 
-    MorphTarget target(const std::map<std::string, int>& from, const std::string& place) const {
+    MorphTarget target(const json& from, const std::string& place) const {
         MorphTarget result;
-        for (const auto& [name, accessor] : from) {
+        for (const auto& [name, value] : from.items()) {
+            const int accessor = value.get<int>();
             if (name == "POSITION") {
                 result.positions = attribute<glm::vec3>(name, accessor, place);
             } else if (name == "NORMAL") {
@@ -202,7 +212,7 @@ private:
     }
 
     void readColors(int accessor, Primitive& primitive) const {
-        if (asset_.model().accessors[std::size_t(accessor)].type == TINYGLTF_TYPE_VEC4) {
+        if (asset_.accessor(accessor).components == 4 && !asset_.accessor(accessor).isMatrix) {
             primitive.colors = attribute<glm::vec4>("COLOR_0", accessor);
             return;
         }
@@ -213,15 +223,22 @@ private:
         for (const glm::vec3& color : colors) primitive.colors.emplace_back(color, 1.0f);
     }
 
-    void readIndices(const tinygltf::Primitive& from, Primitive& primitive) {
+    void readIndices(const json& from, Primitive& primitive) {
         std::vector<std::uint32_t> indices;
         const std::string place = place_ + ".indices";
-        if (from.indices >= 0) asset_.checkIndices(from.indices, place);
-        const std::size_t count = from.indices >= 0 ? asset_.count(from.indices) : size_;
-        const std::size_t unfolded = from.mode == TINYGLTF_MODE_TRIANGLES ? count : count * 3;
-        memory_.take(place, unfolded * sizeof(std::uint32_t), count * sizeof(std::uint32_t));
-        if (from.indices >= 0) {
-            indices = asset_.indices(from.indices, place);
+        const int accessor = integerOr(from, "indices", -1);
+        const Mode mode = modeOf(from);
+        if (accessor >= 0) asset_.checkIndices(accessor, place);
+        const std::size_t count = accessor >= 0 ? asset_.count(accessor) : size_;
+        const std::size_t unfolded = mode == Mode::Triangles ? count : count * 3;
+        const std::size_t kept = unfolded * sizeof(std::uint32_t), read = count * sizeof(std::uint32_t);
+        if (accessor >= 0) {
+            memory_.takeFor(accessor, place, kept, read);
+        } else {
+            memory_.take(place, kept, read);
+        }
+        if (accessor >= 0) {
+            indices = asset_.indices(accessor, place);
             const auto wrong = std::find_if(indices.begin(), indices.end(),
                                             [this](std::uint32_t index) { return index >= size_; });
             if (wrong != indices.end()) {
@@ -234,12 +251,12 @@ private:
             indices.resize(size_);
             for (std::size_t i = 0; i < size_; ++i) indices[i] = std::uint32_t(i);
         }
-        if (from.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
+        if (mode == Mode::Triangles && indices.size() % 3 != 0) {
             warn(scene_, fmt::format("{}: {} indices are no whole triangles; the last are left out", place_,
                                      indices.size()));
             indices.resize(indices.size() / 3 * 3);
         }
-        primitive.indices = triangles(std::move(indices), from.mode);
+        primitive.indices = triangles(std::move(indices), mode);
     }
 
     const Asset& asset_;
@@ -250,67 +267,71 @@ private:
     std::vector<std::uint32_t> kept_;  ///< those that are kept; empty for all
 };
 
-void readVariantNames(const Asset& asset, helio::Scene& scene) {
-    const nlohmann::json::json_pointer path("/extensions/KHR_materials_variants/variants");
-    if (!asset.document().contains(path)) return;
-    for (const nlohmann::json& variant : asset.document()[path])
-        scene.variants.push_back(variant["name"].get<std::string>());
+void readVariantNames(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
+    const json* const extension = extensionOf(asset.document(), "KHR_materials_variants");
+    if (extension == nullptr) return;
+    const json& variants = (*extension)["variants"];
+    memory.take("extensions.KHR_materials_variants.variants", variants.size() * sizeof(std::string), 0);
+    scene.variants.reserve(variants.size());
+    for (const json& variant : variants) scene.variants.push_back(variant["name"].get<std::string>());
 }
 
 /** KHR_materials_variants: a variant that no mapping names keeps the primitive's own material. */
-void readVariants(const tinygltf::Primitive& from, const std::string& place, const helio::Scene& scene,
-                  MemoryBudget& memory, Primitive& primitive) {
-    const auto found = from.extensions.find("KHR_materials_variants");
-    if (found == from.extensions.end()) return;
+void readVariants(const json& from, const std::string& place, const helio::Scene& scene, MemoryBudget& memory,
+                  Primitive& primitive) {
+    const json* const extension = extensionOf(from, "KHR_materials_variants");
+    if (extension == nullptr) return;
     memory.take(place, scene.variants.size() * sizeof(int), 0);
     primitive.variantMaterials.assign(scene.variants.size(), primitive.material);
-    const tinygltf::Value& mappings = found->second.Get("mappings");
-    for (std::size_t m = 0; m < mappings.ArrayLen(); ++m) {
-        const tinygltf::Value& mapping = mappings.Get(int(m));
-        const tinygltf::Value& variants = mapping.Get("variants");
-        for (std::size_t v = 0; v < variants.ArrayLen(); ++v) {
-            const auto variant = std::size_t(variants.Get(int(v)).GetNumberAsInt());
-            primitive.variantMaterials[variant] = mapping.Get("material").GetNumberAsInt();
-        }
+    for (const json& mapping : (*extension)["mappings"]) {
+        for (const json& variant : mapping["variants"])
+            primitive.variantMaterials[std::size_t(variant.get<int>())] = mapping["material"].get<int>();
     }
 }
 
 }  // namespace
 
-std::vector<float> morphWeights(const Asset& asset, const std::vector<double>& weights,
-                                const tinygltf::Mesh& mesh, const std::string& place) {
-    const std::size_t targets = mesh.primitives[0].targets.size();
-    if (!weights.empty() && weights.size() != targets) {
+std::vector<float> morphWeights(const Asset& asset, const json& object, std::size_t targets,
+                                const std::string& place) {
+    std::vector<float> weights;
+    const json& from = listOf(object, "weights");
+    if (from.empty()) return weights;
+    if (from.size() != targets) {
         throw InputError(asset.file(), place,
-                         fmt::format("has {} elements for {} morph targets", weights.size(), targets),
+                         fmt::format("has {} elements for {} morph targets", from.size(), targets),
                          "give one weight per morph target");
     }
-    return {weights.begin(), weights.end()};
+    for (const json& weight : from) weights.push_back(weight.get<float>());
+    return weights;
 }
 
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
-    readVariantNames(asset, scene);
-    for (std::size_t m = 0; m < asset.model().meshes.size(); ++m) {
-        const tinygltf::Mesh& from = asset.model().meshes[m];
+    readVariantNames(asset, memory, scene);
+    const json& meshes = listOf(asset.document(), "meshes");
+    memory.take("meshes", meshes.size() * sizeof(Mesh), 0);
+    scene.meshes.reserve(meshes.size());
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const json &from = meshes[m], &primitives = from["primitives"];
         Mesh mesh;
-        mesh.name = from.name;
-        for (std::size_t p = 0; p < from.primitives.size(); ++p) {
-            const tinygltf::Primitive& primitive = from.primitives[p];
-            monitor.report("geometry", (double(m) + double(p) / double(from.primitives.size())) /
-                                           double(asset.model().meshes.size()));
+        memory.take(fmt::format("meshes[{}].primitives", m), primitives.size() * sizeof(Primitive), 0);
+        mesh.primitives.reserve(primitives.size());
+        mesh.name = from.value("name", "");
+        const std::size_t targets = listOf(primitives[0], "targets").size();
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+            const json& primitive = primitives[p];
+            monitor.report("geometry",
+                           (double(m) + double(p) / double(primitives.size())) / double(meshes.size()));
             const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
-            if (primitive.targets.size() != from.primitives[0].targets.size()) {
+            if (const std::size_t own = listOf(primitive, "targets").size(); own != targets) {
                 throw InputError(asset.file(), place + ".targets",
-                                 fmt::format("has {} elements, the mesh's first primitive {}",
-                                             primitive.targets.size(), from.primitives[0].targets.size()),
+                                 fmt::format("has {} elements, the mesh's first primitive {}", own, targets),
                                  "give every primitive of a mesh as many morph targets");
             }
-            if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
-                skip(scene, primitive.mode == TINYGLTF_MODE_POINTS ? "points" : "lines",
-                     "only triangles are shown");
+            if (const Mode mode = modeOf(primitive); mode < Mode::Triangles) {
+                skip(scene, mode == Mode::Points ? "points" : "lines", "only triangles are shown");
                 continue;
             }
-            for (const auto& [name, value] : primitive.extensions) {
+            for (const auto& [name, value] : extensionsOf(primitive).items()) {
                 if (!isSupported(name)) skip(scene, name, "is not supported");
             }
             Primitive built = PrimitiveBuilder(asset, scene, place, memory).build(primitive);
@@ -318,7 +339,7 @@ void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor,
             if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
         }
         if (!mesh.primitives.empty())
-            mesh.weights = morphWeights(asset, from.weights, from, fmt::format("meshes[{}].weights", m));
+            mesh.weights = morphWeights(asset, from, targets, fmt::format("meshes[{}].weights", m));
         scene.meshes.push_back(std::move(mesh));
     }
 }

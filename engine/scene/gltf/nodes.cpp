@@ -10,38 +10,41 @@
 namespace helio::gltf {
 namespace {
 
+using nlohmann::json;
+
 void buildCameras(const Asset& asset, helio::Scene& scene) {
-    int index = 0;
-    for (const tinygltf::Camera& from : asset.model().cameras) {
+    for (const json& from : listOf(asset.document(), "cameras")) {
         Camera camera;
-        camera.name = from.name;
-        camera.perspective = from.type == "perspective";
-        const double zfar = camera.perspective ? from.perspective.zfar : from.orthographic.zfar;
-        const double znear = camera.perspective ? from.perspective.znear : from.orthographic.znear;
+        camera.name = from.value("name", "");
+        camera.perspective = from["type"] == "perspective";
+        const json& lens = from[camera.perspective ? "perspective" : "orthographic"];
+        const double zfar = numberOr(lens, "zfar", 0), znear = numberOr(lens, "znear", 0);
         if (zfar > 0 && !(zfar > znear)) {
-            throw InputError(asset.file(), fmt::format("cameras[{}]", index), "has zfar before znear",
-                             "give a zfar above znear");
+            throw InputError(asset.file(), fmt::format("cameras[{}]", scene.cameras.size()),
+                             "has zfar before znear", "give a zfar above znear");
         }
         if (camera.perspective) {
-            camera.yfov = float(from.perspective.yfov);
-            camera.aspectRatio = float(from.perspective.aspectRatio);
+            camera.yfov = float(numberOr(lens, "yfov", 0));
+            camera.aspectRatio = float(numberOr(lens, "aspectRatio", 0));
         } else {
-            camera.ymag = float(from.orthographic.ymag);
-            camera.aspectRatio = float(std::abs(from.orthographic.xmag) / from.orthographic.ymag);
+            const double ymag = numberOr(lens, "ymag", 1);
+            camera.ymag = float(ymag);
+            camera.aspectRatio = float(std::abs(numberOr(lens, "xmag", 1)) / ymag);
         }
         camera.znear = float(znear);
         if (zfar > 0) camera.zfar = float(zfar);
-        scene.cameras.push_back(camera);
-        ++index;
+        scene.cameras.push_back(std::move(camera));
     }
 }
 
 /** KHR_lights_punctual. Candela and lux are taken as W/sr and W/m^2 (the contract's radiometry). */
-void buildLights(const Asset& asset, helio::Scene& scene) {
-    const nlohmann::json& document = asset.document();
-    const nlohmann::json::json_pointer path("/extensions/KHR_lights_punctual/lights");
+void buildLights(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
+    const json& document = asset.document();
+    const json::json_pointer path("/extensions/KHR_lights_punctual/lights");
     if (!document.contains(path)) return;
-    for (const nlohmann::json& from : document[path]) {
+    memory.take("extensions.KHR_lights_punctual.lights", document[path].size() * sizeof(PunctualLight), 0);
+    scene.lights.reserve(document[path].size());
+    for (const json& from : document[path]) {
         PunctualLight light;
         light.name = from.value("name", "");
         const auto& type = from["type"].get_ref<const std::string&>();
@@ -62,13 +65,13 @@ void buildLights(const Asset& asset, helio::Scene& scene) {
                 fmt::format("extensions.KHR_lights_punctual.lights[{}].spot", scene.lights.size()),
                 "has its inner cone outside its outer cone", "give innerConeAngle < outerConeAngle");
         }
-        scene.lights.push_back(light);
+        scene.lights.push_back(std::move(light));
     }
 }
 
-glm::mat4 matrixOf(const Asset& asset, const std::vector<double>& values, std::size_t node) {
+glm::mat4 matrixOf(const Asset& asset, const json& values, std::size_t node) {
     glm::mat4 matrix;
-    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = float(values[i]);
+    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = values[i].get<float>();
     const glm::vec4 last(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
     if (last != glm::vec4(0, 0, 0, 1)) {
         throw InputError(asset.file(), fmt::format("nodes[{}].matrix", node), "is not affine",
@@ -77,9 +80,9 @@ glm::mat4 matrixOf(const Asset& asset, const std::vector<double>& values, std::s
     return matrix;
 }
 
-glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std::size_t node,
-                     helio::Scene& scene) {
-    const glm::dquat q(values[3], values[0], values[1], values[2]);
+glm::quat rotationOf(const Asset& asset, const json& values, std::size_t node, helio::Scene& scene) {
+    const auto number = [&values](std::size_t i) { return values[i].get<double>(); };
+    const glm::dquat q(number(3), number(0), number(1), number(2));
     const double length = glm::length(q);
     if (!(length > 1e-6)) {
         throw InputError(asset.file(), fmt::format("nodes[{}].rotation", node), "is no unit quaternion",
@@ -91,13 +94,13 @@ glm::quat rotationOf(const Asset& asset, const std::vector<double>& values, std:
 }
 
 /** EXT_mesh_gpu_instancing: accessors of one translation, rotation and scale per copy of the node's mesh. */
-std::vector<Placement> copiesOf(const Asset& asset, const tinygltf::Value& attributes, std::size_t node,
+std::vector<Placement> copiesOf(const Asset& asset, const json& attributes, std::size_t node,
                                 MemoryBudget& memory, helio::Scene& scene) {
     const std::string place = fmt::format("nodes[{}].extensions.EXT_mesh_gpu_instancing.attributes", node);
     std::vector<Placement> copies;
     bool isFirst = true;
-    for (const std::string& name : attributes.Keys()) {
-        const int accessor = attributes.Get(name).GetNumberAsInt();
+    for (const auto& [name, value] : attributes.items()) {
+        const int accessor = value.get<int>();
         asset.check(accessor);
         if (!isFirst && asset.count(accessor) != copies.size()) {
             throw InputError(
@@ -130,31 +133,32 @@ std::vector<Placement> copiesOf(const Asset& asset, const tinygltf::Value& attri
     return copies;
 }
 
-Node nodeOf(const Asset& asset, const tinygltf::Node& from, std::size_t index, MemoryBudget& memory,
+Node nodeOf(const Asset& asset, const json& from, std::size_t index, MemoryBudget& memory,
             helio::Scene& scene) {
-    const auto vectorOf = [](const std::vector<double>& v) { return glm::vec3(v[0], v[1], v[2]); };
     Node node;
-    node.name = from.name;
-    node.children = from.children;
-    if (from.matrix.size() == 16) node.matrix = matrixOf(asset, from.matrix, index);
-    if (from.translation.size() == 3) node.translation = vectorOf(from.translation);
-    if (from.rotation.size() == 4) node.rotation = rotationOf(asset, from.rotation, index, scene);
-    if (from.scale.size() == 3) node.scale = vectorOf(from.scale);
-    node.mesh = from.mesh;
+    node.name = from.value("name", "");
+    for (const json& child : listOf(from, "children")) node.children.push_back(child.get<int>());
+    if (from.contains("matrix")) node.matrix = matrixOf(asset, from["matrix"], index);
+    node.translation = vectorOr(from, "translation", node.translation);
+    if (from.contains("rotation")) node.rotation = rotationOf(asset, from["rotation"], index, scene);
+    node.scale = vectorOr(from, "scale", node.scale);
+    node.mesh = integerOr(from, "mesh", -1);
+    const int skin = integerOr(from, "skin", -1);
     if (node.mesh >= 0 && !scene.meshes[std::size_t(node.mesh)].primitives.empty()) {
-        node.weights = morphWeights(asset, from.weights, asset.model().meshes[std::size_t(node.mesh)],
-                                    fmt::format("nodes[{}].weights", index));
-        node.skin = from.skin;
+        node.weights =
+            morphWeights(asset, from, scene.meshes[std::size_t(node.mesh)].primitives[0].targets.size(),
+                         fmt::format("nodes[{}].weights", index));
+        node.skin = skin;
     }
-    node.camera = from.camera;
-    for (const auto& [name, value] : from.extensions) {
+    node.camera = integerOr(from, "camera", -1);
+    for (const auto& [name, value] : extensionsOf(from).items()) {
         if (name == "KHR_lights_punctual") {
-            node.light = value.Get("light").GetNumberAsInt();
+            node.light = integerOr(value, "light", -1);
         } else if (name == "EXT_mesh_gpu_instancing") {
-            if (from.skin >= 0) {
+            if (skin >= 0) {
                 skip(scene, "EXT_mesh_gpu_instancing of skinned meshes", "one is shown where its skin says");
             } else {
-                node.copies = copiesOf(asset, value.Get("attributes"), index, memory, scene);
+                node.copies = copiesOf(asset, value["attributes"], index, memory, scene);
             }
         } else {
             skip(scene, name, "is not supported");
@@ -198,31 +202,38 @@ std::vector<int> parents(const Asset& asset, const helio::Scene& scene) {
 }  // namespace
 
 void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
+    const json& document = asset.document();
+    const json &nodes = listOf(document, "nodes"), &cameras = listOf(document, "cameras");
+    memory.take("cameras", cameras.size() * sizeof(Camera), 0);
+    scene.cameras.reserve(cameras.size());
     buildCameras(asset, scene);
-    buildLights(asset, scene);
-    const tinygltf::Model& model = asset.model();
-    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-        scene.nodes.push_back(nodeOf(asset, model.nodes[i], i, memory, scene));
-    }
+    buildLights(asset, memory, scene);
+    // A node's own, its children's indices in the list, and as an instance.
+    memory.take("nodes", nodes.size() * (sizeof(Node) + 3 * sizeof(int) + sizeof(Instance)), 0);
+    scene.nodes.reserve(nodes.size());
+    for (const json& node : nodes)
+        scene.nodes.push_back(nodeOf(asset, node, scene.nodes.size(), memory, scene));
     const std::vector<int> parent = parents(asset, scene);
-    if (model.scenes.empty()) {
+    const json& scenes = listOf(document, "scenes");
+    if (scenes.empty()) {
         for (std::size_t i = 0; i < parent.size(); ++i) {
             if (parent[i] < 0) scene.roots.push_back(int(i));
         }
         return;
     }
-    const auto shown = std::size_t(std::max(model.defaultScene, 0));
-    if (model.scenes.size() > 1) {
-        skip(scene, fmt::format("{} further scenes", model.scenes.size() - 1),
+    const auto shown = std::size_t(integerOr(document, "scene", 0));
+    if (scenes.size() > 1) {
+        skip(scene, fmt::format("{} further scenes", scenes.size() - 1),
              fmt::format("scene {} is shown", shown));
     }
-    scene.roots = model.scenes[shown].nodes;
-    for (std::size_t i = 0; i < scene.roots.size(); ++i) {
-        const int root = scene.roots[i];
-        const bool isTwice =
-            std::count(scene.roots.begin(), scene.roots.begin() + std::ptrdiff_t(i), root) > 0;
+    std::vector<bool> isNamed(parent.size(), false);
+    for (const json& named : listOf(scenes[shown], "nodes")) {
+        const int root = named.get<int>();
+        const bool isTwice = isNamed[std::size_t(root)];
+        isNamed[std::size_t(root)] = true;
+        scene.roots.push_back(root);
         if (parent[std::size_t(root)] >= 0 || isTwice) {
-            throw InputError(asset.file(), fmt::format("scenes[{}].nodes[{}]", shown, i),
+            throw InputError(asset.file(), fmt::format("scenes[{}].nodes[{}]", shown, scene.roots.size() - 1),
                              isTwice ? "names a node twice" : "names a node that has a parent",
                              "name root nodes, once each");
         }

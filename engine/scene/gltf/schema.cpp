@@ -33,13 +33,10 @@ Check asset() {
 }
 
 Check accessor() {
-    // Offsets of sparse parts are an int in tinygltf.
-    const Check sparseOffset = integer(0, maximumInt);
     const Check indices = object({{"bufferView", indexInto("bufferViews"), required},
-                                  {"byteOffset", sparseOffset},
+                                  {"byteOffset", size()},
                                   {"componentType", oneOf({5121, 5123, 5125}), required}});
-    const Check values =
-        object({{"bufferView", indexInto("bufferViews"), required}, {"byteOffset", sparseOffset}});
+    const Check values = object({{"bufferView", indexInto("bufferViews"), required}, {"byteOffset", size()}});
     return object({
         {"bufferView", indexInto("bufferViews")},
         {"byteOffset", size()},

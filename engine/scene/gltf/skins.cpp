@@ -57,9 +57,13 @@ int greatestJoint(const Mesh& mesh) {
 void buildSkins(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
     const auto found = asset.document().find("skins");
     if (found == asset.document().end()) return;
+    scene.skins.reserve(found->size());
     for (std::size_t i = 0; i < found->size(); ++i) {
         const json& from = (*found)[i];
+        memory.take(fmt::format("skins[{}].joints", i), from["joints"].size() * sizeof(int) + sizeof(Skin),
+                    0);
         Skin skin;
+        skin.joints.reserve(from["joints"].size());
         skin.name = from.value("name", "");
         for (const json& joint : from["joints"]) skin.joints.push_back(joint.get<int>());
         if (from.contains("inverseBindMatrices")) {

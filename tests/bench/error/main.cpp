@@ -1,0 +1,54 @@
+// Long experiments on the error estimate; see --help.
+#include "tests/bench/error/coverage.hpp"
+#include "tests/support/error_scenes.hpp"
+
+#include <heliograph/device.hpp>
+#include <heliograph/scene.hpp>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+namespace {
+
+int coverage(const std::vector<std::string>& scenes, const helio::test::CoverageOptions& options) {
+    helio::Device device;
+    fmt::print("{}x{}, {} samples, {} seeds\n", options.size, options.size, options.samples, options.seeds);
+    fmt::print(
+        "| scene | true relMSE | estimate / true | in the interval | above it | below it | reliable | "
+        "high / low |\n|---|---|---|---|---|---|---|---|\n");
+    for (const std::string& scene : scenes) {
+        const helio::test::Coverage c =
+            helio::test::measureCoverage(device, helio::test::errorScene(scene), scene, options);
+        const double percent = 100.0 / c.seeds;
+        fmt::print("| {} | {:.3g} | {:.4f} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {:.3f} |\n", scene,
+                   c.truth, c.estimate / c.truth, c.covered * percent, c.above * percent, c.below * percent,
+                   c.reliable * percent, std::exp(c.width));
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    CLI::App app("Experiments on the error estimate");
+    app.require_subcommand(1);
+    helio::test::CoverageOptions options;
+    std::vector<std::string> scenes = {"cornell", "plates", "room", "spheres"};
+    CLI::App* command =
+        app.add_subcommand("coverage", "How often the 95 % interval of the relMSE holds the true one");
+    command->add_option("scenes", scenes, "Samples, room or spheres")->capture_default_str();
+    command->add_option("--seeds", options.seeds)->capture_default_str();
+    command->add_option("--spp", options.samples)->capture_default_str();
+    command->add_option("--size", options.size)->capture_default_str();
+    command->add_option("--keep", options.keep, "Folder in which the films are kept");
+    command->add_option("--judge", options.judge, "Folder of kept films to judge, in place of rendering");
+    CLI11_PARSE(app, argc, argv);
+    return coverage(scenes, options);
+} catch (const std::exception& error) {
+    fmt::print(stderr, "bench_error: {}\n", error.what());
+    return 1;
+}

@@ -1,0 +1,51 @@
+#include "tests/support/scene_films.hpp"
+
+#include <algorithm>
+
+namespace helio::test {
+
+SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, SamplerKind sampler)
+    : scene_(std::move(scene)), target_(device, size[0], size[1]) {
+    PathTraceOptions options;
+    options.size = size;
+    options.sampler = sampler;
+    const PlacedCamera placed = chooseCamera(scene_, {}, double(size[0]) / size[1]);
+    uploaded_ = std::make_unique<DeviceScene>(device, scene_, PathTracer::packOptions(scene_, options));
+    tracer_ = std::make_unique<PathTracer>(device, *uploaded_, scene_.cameras[std::size_t(placed.camera)],
+                                           placed.transform, options, target_.film());
+}
+
+FilmImages SceneFilms::render(std::uint32_t samples, std::uint32_t seed) {
+    target_.clear();
+    tracer_->restart(seed);
+    for (std::uint32_t end = 0; end < samples;) {
+        end = std::min(end + 1024, samples);
+        while (!tracer_->advance(end)) {
+        }
+    }
+    return target_.resolve();
+}
+
+void MeanImage::add(const FilmImages& film) {
+    sum_.resize(film.mean.size() / 4 * 3);
+    for (std::size_t pixel = 0; pixel < film.mean.size() / 4; ++pixel)
+        for (std::size_t c = 0; c < 3; ++c) sum_[3 * pixel + c] += film.mean[4 * pixel + c];
+    ++count_;
+}
+
+std::vector<double> MeanImage::mean() const {
+    std::vector<double> result(sum_);
+    for (double& value : result) value /= count_;
+    return result;
+}
+
+double relativeError(const FilmImages& film, const std::vector<double>& reference) {
+    double sum = 0;
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        const double r = reference[i], x = film.mean[i / 3 * 4 + i % 3];
+        sum += (x - r) * (x - r) / (r * r + 0.01);
+    }
+    return sum / double(reference.size());
+}
+
+}  // namespace helio::test

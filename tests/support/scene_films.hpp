@@ -1,0 +1,44 @@
+#pragma once
+/** @file Films of one scene under many seeds, made with one set of pipelines. */
+#include "passes/pathtrace/path_tracer.hpp"
+#include "passes/renderer/film_target.hpp"
+
+#include <heliograph/scene.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace helio::test {
+
+/** Traces a scene again and again, as the renderer would with no limit but the number of samples. */
+class SceneFilms {
+public:
+    SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size,
+               SamplerKind sampler = SamplerKind::Sobol);
+    /** A film of `samples` per pixel. */
+    FilmImages render(std::uint32_t samples, std::uint32_t seed);
+
+private:
+    Scene scene_;
+    FilmTarget target_;
+    std::unique_ptr<DeviceScene> uploaded_;
+    std::unique_ptr<PathTracer> tracer_;
+};
+
+/** Mean of pictures, R G B per pixel. */
+class MeanImage {
+public:
+    void add(const FilmImages& film);
+    std::vector<double> mean() const;
+
+private:
+    std::vector<double> sum_;
+    double count_ = 0;
+};
+
+/** relMSE of a film's picture against a reference. */
+double relativeError(const FilmImages& film, const std::vector<double>& reference);
+
+}  // namespace helio::test
