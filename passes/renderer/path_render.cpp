@@ -34,6 +34,8 @@ public:
         if (const auto checkpoint = checkpoints_.resume()) {
             reached = checkpoint->reached;
             underWay = checkpoint->end;
+            // What comes next goes by the error at the last end.
+            if (reached >= underWay && reached > 0 && judged(reached)) return reached;
         }
         for (;;) {
             std::uint32_t end = underWay > reached ? underWay : schedule_.next(reached, job_.seconds());
@@ -51,7 +53,11 @@ public:
     }
 
 private:
-    /** Traces to the end of a batch; false where the application cancels. */
+    bool timeIsOver() const {
+        return job_.options.maxSeconds > 0 && job_.seconds() >= job_.options.maxSeconds;
+    }
+
+    /** Traces to the end of a batch; false where the application cancels or the time is over before. */
     bool trace(std::uint32_t end, std::uint32_t reached) {
         for (bool done = false; !done;) {
             tracer_.setTurnBudget(budget_.turns());
@@ -59,6 +65,7 @@ private:
             done = tracer_.advance(end);
             budget_.took(ownSeconds(watch));
             if (!job_.notify(progress(done ? end : reached)) && !done) return false;
+            if (!done && timeIsOver()) return false;
             checkpoints_.saveWhenDue(done ? end : reached, end);
         }
         return true;
@@ -84,8 +91,10 @@ private:
         const ErrorEstimate error = estimateError(target_.resolve());
         estimateSeconds_ = watch.seconds();
         relmse_ = error.relmse;
+        if (!decides) return false;
+        schedule_.judged(reached, error);
         // A tail that few samples have not met yet looks like no error at all.
-        return decides && error.high < job_.options.maxError && (error.reliable || reached >= 64);
+        return error.high < job_.options.maxError && (error.reliable || reached >= 64);
     }
 
     Progress progress(std::uint32_t reached) const {
@@ -144,6 +153,22 @@ void noteCounters(const PathCounters& counters, RenderResult& result) {
         result.warnings.push_back(fmt::format(
             "{} rays were given up in the tree: thousands of triangles coincide", counters.abandonedRays));
     }
+}
+
+/** What limits of time and error did not bring. */
+void warnOfLimits(const FilmImages& film, RenderJob& job) {
+    RenderResult& result = job.result;
+    if (job.options.maxError > 0 && !result.cancelled) {
+        if (result.error.high >= job.options.maxError)
+            result.warnings.push_back(
+                fmt::format("the error limit of {} was not reached", job.options.maxError));
+        else if (!result.error.reliable)
+            result.warnings.emplace_back("the error limit was met by an estimate that is not reliable");
+    }
+    std::size_t empty = 0;
+    for (std::size_t i = 3; i < film.mean.size(); i += 4) empty += film.mean[i] == 0 && film.variance[i] == 0;
+    if (empty > 0 && !result.cancelled)
+        result.warnings.push_back(fmt::format("the time was over when {} pixels had no sample yet", empty));
 }
 
 /** Device times without those of set-up, which hold the driver's compilation. */
@@ -210,6 +235,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
     job.finish();
+    warnOfLimits(film, job);
 
     Frame frame(film.width, film.height);
     frame.add({"R", "G", "B"}, film.mean.data(), 4);

@@ -1,6 +1,8 @@
 #include "passes/renderer/sample_schedule.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 namespace helio {
 namespace {
@@ -12,16 +14,36 @@ constexpr double fewestTurns = 64, mostTurns = 30000;  // of PathTracer
 }  // namespace
 
 SampleSchedule::SampleSchedule(const RenderOptions& options)
-    : samples_(options.samples), limit_(longestBatch), growth_(4), maxSeconds_(options.maxSeconds) {
+    : samples_(options.samples),
+      limit_(longestBatch),
+      growth_(4),
+      maxSeconds_(options.maxSeconds),
+      maxError_(options.maxError) {
     const std::uint64_t pixels = std::uint64_t(options.size[0]) * options.size[1];
     first_ = std::uint32_t(std::clamp<std::uint64_t>(firstBatchPaths / pixels, 1, 64));
     if (options.maxError > 0) {
-        // The error is known only at the ends: 8 samples are the fewest that are judged, then half as much
-        // again.
+        // The error is known only at the ends: 8 samples are the fewest that are judged.
         first_ = std::min(first_, 8u);
-        growth_ = 1.5;
+        growth_ = 2;
     }
     if (maxSeconds_ > 0) first_ = 1;
+}
+
+void SampleSchedule::judged(std::uint32_t reached, const ErrorEstimate& error) {
+    judgedAt_ = reached;
+    highest_ = error.high;
+}
+
+std::uint64_t SampleSchedule::untilErrorLimit(std::uint32_t reached) const {
+    // Errors fall as N^-1 (independent samples) to about N^-1.2 (Owen-scrambled Sobol), and the interval
+    // narrows as well: by a steeper law the limit is met too early rather than too late, and small steps do
+    // the rest.
+    constexpr double slope = 1.25, smallestStep = 1.08, largestStep = 2;
+    const double step = std::pow(highest_ / maxError_, 1 / slope);
+    const double growth = std::isfinite(step) ? std::clamp(step, smallestStep, largestStep) : largestStep;
+    const std::uint64_t end = reached + std::max<std::uint64_t>(1, std::uint64_t((growth - 1) * reached));
+    // Sobol's errors are least at powers of two: none is passed by.
+    return std::min(end, std::bit_ceil(std::uint64_t(reached) + 1));
 }
 
 std::uint32_t SampleSchedule::next(std::uint32_t reached, double seconds) const {
@@ -29,6 +51,8 @@ std::uint32_t SampleSchedule::next(std::uint32_t reached, double seconds) const 
     std::uint64_t end = first_;
     // Follows the sequence of ends from its start, so that it is the same whatever was reached when.
     while (end <= reached) end = std::min(std::uint64_t(double(end) * growth_ + 0.5), end + limit_);
+    if (judgedAt_ == reached && reached > 0)
+        end = std::min(untilErrorLimit(reached), std::uint64_t(reached) + limit_);
     if (maxSeconds_ > 0 && reached > 0) {
         if (seconds >= maxSeconds_) return reached;
         const double perSample = seconds / reached, left = maxSeconds_ - seconds;

@@ -248,7 +248,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     const RenderResult result = renderer.render(scene, options);
     display.finish();
     for (const std::string& warning : result.warnings) say("warning: {}", warning);
-    if (result.samples == 0) return reportNothingWritten();
+    if (result.samples == 0 && result.cancelled) return reportNothingWritten();
 
     OutputWriter writer;
     for (const std::string& output : arguments.outputs) {

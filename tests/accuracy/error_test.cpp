@@ -3,6 +3,8 @@
 #include "tests/support/error_scenes.hpp"
 #include "tests/support/scene_films.hpp"
 
+#include <heliograph/renderer.hpp>
+
 #include <gtest/gtest.h>
 
 #include <string>
@@ -49,6 +51,33 @@ TEST(ErrorEstimate, IsNotReliableOnACaustic) {
     SceneFilms films(device(), errorScene("glass"), {48, 48});
     for (std::uint32_t seed = 1; seed <= 3; ++seed)
         EXPECT_FALSE(estimateError(films.render(32, seed)).reliable);
+}
+
+/** The fewest samples, at least 8, whose estimate is below the limit. */
+std::uint32_t leastSamples(SceneFilms& films, double limit) {
+    for (std::uint32_t samples = 8;; ++samples) {
+        const ErrorEstimate error = estimateError(films.render(samples, 0));
+        if (error.high < limit && (error.reliable || samples >= 64)) return samples;
+    }
+}
+
+TEST(ErrorLimit, EndsWithin20PercentOfTheLeastSamplesThatSuffice) {
+    for (const char* name : {"cornell", "spheres"}) {
+        const Scene scene = errorScene(name);
+        SceneFilms films(device(), scene, {16, 16});
+        Renderer renderer(deviceOptions());
+        for (const double limit : {0.05, 0.02, 0.008, 0.003}) {
+            const std::uint32_t least = leastSamples(films, limit);
+            RenderOptions options;
+            options.size = {16, 16};
+            options.samples = 4096;
+            options.maxError = limit;
+            const RenderResult result = renderer.render(scene, options);
+            EXPECT_LT(result.error.high, limit) << name;
+            EXPECT_LE(result.samples, 1.2 * least) << name << " to " << limit;
+            printf("%s to %g: %u samples, %u suffice\n", name, limit, result.samples, least);
+        }
+    }
 }
 
 }  // namespace

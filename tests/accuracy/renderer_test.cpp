@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -273,6 +274,29 @@ TEST(Renderer, StopsAtTheTimeAskedFor) {
     const RenderResult result = renderer().render(cornell(), options);
     EXPECT_LT(result.samples, 1u << 20);
     EXPECT_GT(result.samples, 0u);
+}
+
+TEST(Renderer, TimeIsKeptToADispatch) {
+    RenderOptions options = small(64, 256);
+    options.maxSeconds = 1e-9;
+    int dispatches = 0;
+    options.progress = [&](const Progress& progress) {
+        dispatches += progress.stage == "render";
+        return true;
+    };
+    const RenderResult result = renderer().render(load("sample:glass"), options);
+    EXPECT_EQ(dispatches, 1);
+    EXPECT_FALSE(result.cancelled);
+    EXPECT_LE(result.samples, 1u);
+    ASSERT_EQ(result.image.width, 256u);
+    // What is done is there, and what is not is told.
+    double sampled = 0;
+    for (std::uint32_t i = 0; i < 256 * 256; ++i) sampled += result.image.at(i % 256, i / 256, 0) > 0;
+    EXPECT_GT(sampled, 0);
+    const bool told = std::ranges::any_of(result.warnings, [](const std::string& warning) {
+        return warning.find("had no sample yet") != std::string::npos;
+    });
+    EXPECT_EQ(told, result.samples == 0);
 }
 
 TEST(Renderer, ErrorIntervalContainsTheTruth) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <limits>
 
 namespace helio {
@@ -54,12 +55,41 @@ TEST(SampleSchedule, NeverExceedsWhatTheFilmTakesAtOnce) {
     EXPECT_EQ(before, 1u << 24);
 }
 
-TEST(SampleSchedule, JudgesTheErrorOften) {
+TEST(SampleSchedule, EndsWithin20PercentOfWhatTheErrorLimitNeeds) {
     RenderOptions options;
     options.size = {64, 64};
-    options.samples = 100;
-    options.maxError = 0.01;
-    EXPECT_EQ(ends(options), (std::vector<std::uint32_t>{8, 12, 18, 27, 41, 62, 93, 100}));
+    options.samples = 1u << 22;
+    for (const double slope : {0.9, 1.0, 1.14, 1.25}) {
+        for (const double limit : {1e-1, 1e-2, 1.7e-3, 1e-4}) {
+            options.maxError = limit;
+            const auto high = [&](double n) { return 0.7 * std::pow(n, -slope); };
+            SampleSchedule schedule(options);
+            std::uint32_t reached = 0, judgements = 0;
+            do {
+                reached = schedule.next(reached, 0);
+                schedule.judged(reached, {0, 0, high(reached), true});
+                ++judgements;
+            } while (high(reached) >= limit);
+            const double least = std::max(8.0, std::pow(0.7 / limit, 1 / slope));
+            EXPECT_LE(reached, 1.1 * least + 1) << "N^-" << slope << " to " << limit;
+            EXPECT_LE(judgements, 30u) << "N^-" << slope << " to " << limit;
+        }
+    }
+}
+
+TEST(SampleSchedule, GoesOnWhateverTheErrorIs) {
+    RenderOptions options;
+    options.size = {64, 64};
+    options.samples = 1000;
+    options.maxError = 1e-3;
+    const double inf = std::numeric_limits<double>::infinity(),
+                 nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double high : {0.0, 1e-3, inf, nan}) {
+        SampleSchedule schedule(options);
+        schedule.judged(100, {0, 0, high, false});
+        EXPECT_GT(schedule.next(100, 0), 100u) << high;
+        EXPECT_LE(schedule.next(100, 0), 200u) << high;
+    }
 }
 
 TEST(SampleSchedule, KeepsBatchesToHalfOfTheTimeLeft) {
