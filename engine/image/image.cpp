@@ -1,5 +1,6 @@
 
 #include "engine/image/backend.hpp"
+#include "engine/image/display.hpp"
 #include "engine/image/read_file.hpp"
 
 #include <heliograph/error.hpp>
@@ -34,12 +35,15 @@ std::uint8_t encode8(float linear) {
     return std::uint8_t(std::floor(srgbEncode(std::min(double(linear), 1.0)) * 255 + 0.5));
 }
 
-std::vector<std::uint8_t> encodeRgb8(const std::string& file, const ImageF& image) {
+std::vector<std::uint8_t> encodeRgb8(const std::string& file, const ImageF& image, const Display& display) {
     const auto rgb = colorChannels(file, image);
     std::vector<std::uint8_t> pixels;
     pixels.reserve(std::size_t(image.width) * image.height * 3);
+    const bool asItIs = display.exposure == 0 && display.curve == ToneCurve::None;
     for (std::size_t i = 0; i < image.data.size(); i += image.channels.size()) {
-        for (std::size_t channel : rgb) pixels.push_back(encode8(image.data[i + channel]));
+        std::array<float, 3> color{image.data[i + rgb[0]], image.data[i + rgb[1]], image.data[i + rgb[2]]};
+        if (!asItIs) color = displayed(color, display);
+        for (const float value : color) pixels.push_back(encode8(value));
     }
     return pixels;
 }
@@ -60,7 +64,7 @@ ImageF loadImage(const std::filesystem::path& file) {
     return image;
 }
 
-void saveImage(const std::filesystem::path& file, const ImageF& image) {
+void saveImage(const std::filesystem::path& file, const ImageF& image, const Display& display) {
     assert(image.data.size() == std::size_t(image.width) * image.height * image.channels.size());
     const std::string name = file.string();
     if (image.width == 0 || image.height == 0 || image.channels.empty()) {
@@ -72,7 +76,7 @@ void saveImage(const std::filesystem::path& file, const ImageF& image) {
     if (extension == ".exr") {
         fault = imageBackend().encodeExr(image, content);
     } else if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
-        fault = imageBackend().encodeRgb8(encodeRgb8(name, image), image.width, image.height,
+        fault = imageBackend().encodeRgb8(encodeRgb8(name, image, display), image.width, image.height,
                                           extension == ".png" ? "png" : "jpg", content);
     } else {
         throw InputError(name, "", fmt::format("unknown image extension '{}'", extension),

@@ -338,6 +338,25 @@ private:
         number(place, "znear", camera.znear, camera.perspective ? smallest : 0, largest);
         if (!(camera.zfar > camera.znear))
             refuse(place, "its zfar is not beyond its znear", "give zfar > znear");
+        if (camera.projection > Projection::Equisolid)
+            refuse(place, "its projection is none of the known", "give one of Projection's values");
+        number(place, "fieldOfView", camera.fieldOfView, 1e-6, 6.2831855);
+        if (camera.lens) check(camera, *camera.lens, place);
+        if (!camera.exposure) return;
+        number(place, "exposure.fNumber", camera.exposure->fNumber, 1e-3, 1e6);
+        number(place, "exposure.shutterSeconds", camera.exposure->shutterSeconds, 1e-9, 1e9);
+        number(place, "exposure.iso", camera.exposure->iso, 1e-3, 1e9);
+    }
+
+    void check(const Camera& camera, const ThinLens& lens, const std::string& place) const {
+        if (!camera.perspective || camera.projection != Projection::Plane)
+            refuse(place, "has a thin lens but no perspective", "leave the lens out");
+        number(place, "lens.apertureDiameter", lens.apertureDiameter, 0, largest);
+        if (!(lens.focusDistance >= 1e-18f))  // infinity is well
+            refuse(place, fmt::format("lens.focusDistance is {}", lens.focusDistance), "give 1e-18 or more");
+        if (lens.blades != 0 && (lens.blades < 3 || lens.blades > 64))
+            refuse(place, fmt::format("its lens has {} blades", lens.blades), "give 3 to 64, or 0");
+        number(place, "lens.bladeRotation", lens.bladeRotation, -1e6, 1e6);
     }
 
     void check(const PunctualLight& light, const std::string& place) const {

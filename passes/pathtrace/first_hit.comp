@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 /** @file What the ray through each pixel's centre meets first: ids, depth, shading normal, base
- * colour (what a surface is tinted by, be it diffuse, metal or glass). Holes of alpha masks are seen through, blended
+ * colour (what a surface is tinted by, be it diffuse, metal or glass). A lens is passed at its middle. Holes of alpha masks are seen through, blended
  * surfaces count as opaque. */
 #include "passes/pathtrace/camera.glsl"
 #include "passes/pathtrace/surface.glsl"
@@ -25,11 +25,11 @@ void main() {
     const uvec2 pixel = tilePixel(parameters.size);
     if (any(greaterThanEqual(pixel, parameters.size))) return;
     vec3 origin, direction;
-    cameraRay(parameters.camera, vec2(pixel) + 0.5, parameters.size, origin, direction);
+    const bool seen = cameraRay(parameters.camera, vec2(pixel) + 0.5, parameters.size, vec2(0.0), origin, direction) > 0.0;
     float distance;
     int slot;
     closestSurface(origin, direction, -1, 0u, true, distance, slot);
-    const bool hit = slot >= 0;
+    const bool hit = slot >= 0 && seen;
     const SurfacePoint s = surfaceAt(origin, direction, max(slot, 0));
     const int first = int(texelFetch(uInstanceFirst, s.triangle.instance).x);
     const float depth = dot(s.position - parameters.camera.origin.xyz, parameters.camera.forward.xyz);

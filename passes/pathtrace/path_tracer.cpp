@@ -15,6 +15,7 @@
 #include <cassert>
 #include <cstring>
 #include <map>
+#include <optional>
 
 namespace helio {
 namespace {
@@ -50,6 +51,7 @@ struct PathTracer::Impl {
           scene_(sceneIn),
           options_(optionsIn),
           frame_(cameraFrame(camera, transform, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
+          camera_(cameraTable(camera, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
           orthographic_(!camera.perspective),
           state_(device, "pathtrace.state", optionsIn.size[0] * 4, optionsIn.size[1] * 2, Format::RGBA32F),
           counters_(device, "pathtrace.counters", sizeof(DeviceCounters)) {
@@ -60,6 +62,7 @@ struct PathTracer::Impl {
         skipped_ = scene_.info().skipped;
         if (scene_.info().materialFeatures != 0)
             materialDefines_["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
+        if (!camera_.texels.empty()) table_.emplace(makeBuffer(device, "pathtrace.camera", camera_.texels));
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
         if (unrolled_) generated_ = unrolledScene(scene_.info().triangles, scene_.info().lights);
         declareTrace(film);
@@ -70,6 +73,7 @@ struct PathTracer::Impl {
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
         spec["ORTHOGRAPHIC"] = orthographic_;
         if (!materialDefines_.empty()) spec.merge(scene_.constants({"ALBEDO_TABLES"}));
+        spec.merge(SpecConstants(camera_.constants));
         return spec;
     }
 
@@ -79,6 +83,7 @@ struct PathTracer::Impl {
         defines.insert(materialDefines_.begin(), materialDefines_.end());
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
+        if (table_) defines["CAMERA_TABLE"] = "1";
         if (!unrolled_ && defines.empty()) return built;
         return compileVariant(built, {.defines = defines, .generated = generated_});
     }
@@ -87,6 +92,12 @@ struct PathTracer::Impl {
         std::vector<std::string_view> names = kSurfaceBuffers;
         if (!materialDefines_.empty()) names.push_back("uTangents");
         return names;
+    }
+
+    /** The camera's table, for cameras that have one. */
+    std::vector<Binding> cameraBinding(Graph& graph) {
+        if (!table_) return {};
+        return {{"uCamera", graph.import(*table_)}};
     }
 
     void declareTrace(Film& film) {
@@ -124,6 +135,7 @@ struct PathTracer::Impl {
         graph.compute("trace", kernel(shaders::trace, defines), {.spec = spec})
             .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, buffers))
+            .reads(cameraBinding(graph))
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
             .record([this](Commands& commands) {
                 const auto groups = groupsFor(options_.size);
@@ -169,6 +181,7 @@ struct PathTracer::Impl {
         graph.compute("first hit", kernel(shaders::first_hit), {.spec = constants()})
             .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, {"uInstanceFirst"}))
+            .reads(cameraBinding(graph))
             .overwrites({{"uIds", ids}, {"uNormal", normals}, {"uAlbedo", albedos}})
             .record([&](Commands& commands) {
                 const auto groups = groupsFor(options_.size);
@@ -196,6 +209,8 @@ struct PathTracer::Impl {
     DeviceScene& scene_;
     PathTraceOptions options_;
     CameraFrame frame_;
+    CameraTable camera_;
+    std::optional<DeviceBuffer> table_;
     bool orthographic_;
     bool unrolled_ = false;
     std::string generated_;

@@ -62,8 +62,11 @@ layout(constant_id = 3) const bool COUNT_TURNS = true;  ///< the loop's body has
 Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     Path path;
     const vec2 place = vec2(pixel) + 0.5 + filterOffset(FILTER_KIND, sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER));
-    cameraRay(parameters.camera, place, parameters.size, path.origin, path.direction);
-    path.throughput = vec3(1.0);
+    vec2 lens = vec2(0.0);
+#ifdef CAMERA_TABLE
+    if (HAS_LENS) lens = lensPoint(sample2D(SAMPLER_KIND, numbers, DIMENSION_LENS));
+#endif
+    path.throughput = vec3(cameraRay(parameters.camera, place, parameters.size, lens, path.origin, path.direction));
     path.radiance = vec3(0.0);
     path.density = -1.0;
     path.depth = 0u;
@@ -118,6 +121,9 @@ void main() {
         const int shadowTurns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
         path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
 
+#ifdef CAMERA_TABLE
+        alive = alive && largestOf(path.throughput) > 0.0;  // where the camera sees nothing
+#endif
         shadowRays += shadow.limit > 0.0 ? 1u : 0u;
         bounceRays += alive ? 1u : 0u;
         cutPaths += cut ? parameters.countCut : 0u;

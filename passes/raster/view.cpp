@@ -58,4 +58,21 @@ RasterView makeRasterView(const glm::dmat4& cameraToWorld, const Camera& camera,
     return view;
 }
 
+RasterView lensView(const RasterView& view, const ThinLens& lens, const glm::dvec2& point) {
+    const glm::dvec3 across = view.rowX - 0.5 * view.width * view.rowW;
+    const glm::dvec3 down = view.rowY - 0.5 * view.height * view.rowW;
+    const double focal = glm::length(across);  // pixels
+    const double radius = 0.5 * double(lens.apertureDiameter);
+    RasterView result = view;
+    const glm::dvec3 aside = (radius / focal) * (point.x * across - point.y * down);
+    result.eye = glm::dvec3(glm::vec3(view.eye + aside));
+    // What the point at distance w along the axis moves by, (eye' - eye) (1 / focus - 1 / w), is 0 at the
+    // focus.
+    const glm::dvec3 moved = result.eye - view.eye;
+    const double perFocus = 1.0 / double(lens.focusDistance);
+    result.rowX += glm::dot(moved, across) * perFocus * view.rowW;
+    result.rowY += glm::dot(moved, down) * perFocus * view.rowW;
+    return result;
+}
+
 }  // namespace helio

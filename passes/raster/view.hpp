@@ -37,4 +37,8 @@ RasterView makeRasterView(const glm::dmat4& cameraToWorld, const Camera& camera,
                           std::array<std::uint32_t, 2> size, double nearDistance = 0.0,
                           double farthest = 0.0);
 
+/** The perspective view of a point of a thin lens: `point` in units of the lens's radius, to the right and
+ * up. What lies in the sharp plane stays where it is in the image. */
+RasterView lensView(const RasterView& view, const ThinLens& lens, const glm::dvec2& point);
+
 }  // namespace helio

@@ -16,6 +16,9 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
                                                                     const DeviceInfo& device) {
     std::string camera = fmt::format("{} {} {} {}", view.camera.perspective, view.camera.yfov,
                                      view.camera.ymag, view.camera.znear);
+    const ThinLens lens = view.camera.lens.value_or(ThinLens{});
+    camera += fmt::format(" {} {} {} {} {} {}", int(view.camera.projection), view.camera.fieldOfView,
+                          lens.apertureDiameter, lens.focusDistance, lens.blades, lens.bladeRotation);
     for (glm::length_t c = 0; c < 4; ++c)
         for (glm::length_t r = 0; r < 3; ++r) camera += fmt::format(" {}", view.transform[c][r]);
     return {{"version", std::string(version())},

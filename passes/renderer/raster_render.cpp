@@ -1,5 +1,8 @@
 #include "passes/renderer/raster_render.hpp"
 
+#include "engine/scene/photography.hpp"
+#include "passes/pathtrace/camera_frame.hpp"
+
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
@@ -35,6 +38,16 @@ void noteUnused(const RenderOptions& options, RenderResult& result) {
     if (options.samples > 1) skip("samples", why);
     if (options.filter != PixelFilter::Box) skip("pixel filter", why);
     if (options.maxDepth >= 0) skip("depth limit", "the raster pipeline shades direct light only");
+}
+
+/** Point k of Halton's sequence in bases 3 and 5, which the sets of positions in a pixel do not use. */
+glm::dvec2 haltonPoint(std::size_t k) {
+    const auto inverse = [](std::size_t base, std::size_t n) {
+        double scale = 1, sum = 0;
+        for (; n > 0; n /= base) sum += (scale /= double(base)) * double(n % base);
+        return sum;
+    };
+    return {inverse(3, k + 1), inverse(5, k + 1)};
 }
 
 }  // namespace
@@ -144,7 +157,8 @@ void RasterSession::makeMips(Device& device) {
     plan.wait(plan.execute());
 }
 
-bool RasterSession::picture(const RasterView& view, RenderJob& job, std::vector<float>& color) {
+bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
+                            std::vector<float>& color) {
     const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
     const auto add = [&](const RasterCounters& counters) {
         const auto* from = reinterpret_cast<const std::uint64_t*>(&counters);
@@ -155,7 +169,8 @@ bool RasterSession::picture(const RasterView& view, RenderJob& job, std::vector<
     shaded_ = 0;
     if (kind_ == Kind::Supersampling) {
         for (std::size_t k = 0; k < positions.size(); ++k) {
-            *sampleViews_[0] = shiftedView(view, positions[k]);
+            const glm::dvec2 point = lens ? lensPoint(*lens, haltonPoint(k)) : glm::dvec2(0);
+            *sampleViews_[0] = shiftedView(lens ? lensView(view, *lens, point) : view, positions[k]);
             *weight_ = {1.0f / float(positions.size()), k == 0};
             const Execution done = samplePlan_.execute();
             add(counters_.wait(done).at(0));
@@ -218,14 +233,14 @@ void RasterSession::noteCounters(RenderResult& result) const {
                        {"pixels_shaded", shaded_}};
 }
 
-void RasterSession::render(const RasterView& view, RenderJob& job) {
+void RasterSession::render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job) {
     *view_ = view;
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
     job.graphviz = (sampled ? samplePlan_ : plan_).graphviz();
     RenderResult& result = job.result;
     job.beginRendering();
     std::vector<float> color;
-    if (!picture(view, job, color)) return job.finish();
+    if (!picture(view, lens, job, color)) return job.finish();
     Execution centre;
     if (auxiliary_) {
         centre = plan_.execute();
@@ -246,6 +261,11 @@ void RasterSession::render(const RasterView& view, RenderJob& job) {
     }
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
+    if (lens && kind_ != Kind::Supersampling) {
+        result.skipped.emplace_back("thin lens",
+                                    "the raster pipeline takes a point of the lens for each sample of ssaaN, "
+                                    "gridN, jitterN and randomN antialiasing; shown from its middle");
+    }
     noteCounters(result);
     job.notify({.stage = "render",
                 .fraction = 1,
@@ -255,6 +275,10 @@ void RasterSession::render(const RasterView& view, RenderJob& job) {
 }
 
 void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job) {
+    if (view.camera.projection != Projection::Plane)
+        throw InputError("", view.camera.name.empty() ? "camera" : fmt::format("camera {}", view.camera.name),
+                         "is a panorama or a fisheye, which the raster pipeline cannot draw",
+                         "use the path pipeline");
     const double farthest = farthestDistance(view.transform, scene.bounds);
     // The default near distance comes from the camera's znear, which a tiny scene may lie wholly before.
     const bool isTiny = view.camera.perspective && farthest < double(view.camera.znear);
@@ -265,7 +289,7 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);
     }
     if (!job.notify({.stage = "compile"})) return;
-    scene.raster->render(rasterView, job);
+    scene.raster->render(rasterView, hasLens(view.camera) ? view.camera.lens : std::nullopt, job);
 }
 
 }  // namespace helio

@@ -28,7 +28,8 @@ public:
     RasterSession& operator=(const RasterSession&) = delete;
 
     bool fits(const RasterView& view, const RenderOptions& options) const;
-    void render(const RasterView& view, RenderJob& job);
+    /** `lens`: where the camera has one; supersampling takes a point of it for every sample. */
+    void render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job);
 
 private:
     using Kind = Antialiasing::Kind;
@@ -38,7 +39,8 @@ private:
     void makeSupersamplePlan(Device& device);
     void makeMultisamplePlan(Device& device);
     /** The picture, vec4 a pixel; false where the application cancels. */
-    bool picture(const RasterView& view, RenderJob& job, std::vector<float>& color);
+    bool picture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
+                 std::vector<float>& color);
     void addAuxiliary(Frame& frame, const Execution& execution) const;
     void noteCounters(RenderResult& result) const;
 

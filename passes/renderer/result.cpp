@@ -36,7 +36,7 @@ std::string RenderResult::json() const {
     return statistics.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-void save(const std::filesystem::path& file, const RenderResult& result) {
+void save(const std::filesystem::path& file, const RenderResult& result, const Display& display) {
     ImageF image = result.image;
     image.metadata["scene"] = result.scene;
     image.metadata["seed"] = std::int64_t(result.seed);
@@ -48,7 +48,7 @@ void save(const std::filesystem::path& file, const RenderResult& result) {
     image.metadata["errorReliable"] = std::int64_t(result.error.reliable);
     image.metadata["device"] = result.device;
     image.metadata["version"] = result.version;
-    saveImage(file, image);
+    saveImage(file, image, {display.exposure + result.exposure, display.curve});
 }
 
 }  // namespace helio

@@ -16,7 +16,9 @@ Buffer declareTonemap(Graph& graph, Buffer linear, std::uint32_t width, std::uin
     };
     const Push push{std::exp2(options.exposure), width, height};
     const Buffer encoded = graph.buffer("tonemap.encoded", {std::uint64_t(width) * height * 4});
-    graph.compute("tonemap", shaders::tonemapEncode)
+    graph
+        .compute("tonemap", shaders::tonemapEncode,
+                 {.spec = {{"TONE_CURVE", std::uint32_t(options.curve)}}})
         .reads({{"uLinear", linear}})
         .overwrites({{"uEncoded", encoded}})
         .record([push](Commands& c) { c.push(push).dispatchOver(push.width, push.height); });

@@ -28,6 +28,7 @@ struct RenderArguments {
     std::string stats, graph;
     std::string device = "auto";
     std::string antialiasing;
+    Display display;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
     RenderOptions options;
@@ -169,6 +170,19 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
 }
 
+/** Refuses what PNG and JPEG images alone go by where there is none. */
+void checkDisplayOptions(const CLI::App& command, const std::vector<std::string>& outputs) {
+    if (std::ranges::any_of(outputs, [](const std::string& file) { return !holdsEveryChannel(file); }))
+        return;
+    for (const char* option : {"--tonemap", "--exposure"}) {
+        if (command.count(option) > 0) {
+            throw CLI::ValidationError(option,
+                                       "has no effect: an EXR image holds linear light as it is; "
+                                       "name a .png or .jpg with -o");
+        }
+    }
+}
+
 /** Writes every file that can be written and says which; throws the first failure after the last. */
 class OutputWriter {
 public:
@@ -219,6 +233,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         }
     }
     for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
+    checkDisplayOptions(command, arguments.outputs);
     for (const std::string& output : {arguments.stats, arguments.graph}) {
         if (!output.empty()) checkTextOutput(output);
     }
@@ -252,7 +267,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
 
     OutputWriter writer;
     for (const std::string& output : arguments.outputs) {
-        writer.write(output, arguments.quiet, [&] { save(output, result); });
+        writer.write(output, arguments.quiet, [&] { save(output, result, arguments.display); });
     }
     if (!arguments.stats.empty()) {
         writer.write(arguments.stats, true, [&] { writeTextFile(arguments.stats, result.json() + "\n"); });
@@ -403,6 +418,17 @@ void addRenderCommand(CLI::App& app, Command& run) {
             "--light-size", options.shadows.lightSize,
             "Radius of punctual lights for pcss; of directional ones the tangent of their half angle")
         ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    addChoice<ToneCurve>(command, "--tonemap", arguments->display.curve,
+                         {{"none", ToneCurve::None},
+                          {"reinhard", ToneCurve::Reinhard},
+                          {"filmic", ToneCurve::Filmic},
+                          {"aces", ToneCurve::Aces}},
+                         "Tone curve of PNG and JPEG images: none (default), reinhard, filmic, aces");
+    command
+        ->add_option("--exposure", arguments->display.exposure,
+                     "Stops by which PNG and JPEG images are brighter, on top of the camera's own exposure")
+        ->check(CLI::Range(-100.0, 100.0))
         ->capture_default_str();
     command->add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command

@@ -88,8 +88,16 @@ Json cameras(const Scene& scene) {
     Json list = Json::array();
     for (const PlacedCamera& placed : scene.placedCameras()) {
         const Camera& camera = scene.cameras[std::size_t(placed.camera)];
-        list.push_back(
-            {{"name", camera.name}, {"type", camera.perspective ? "perspective" : "orthographic"}});
+        constexpr const char* wide[] = {"", "panorama", "equidistant fisheye", "equisolid fisheye"};
+        const bool isPlane = camera.projection == Projection::Plane;
+        Json entry = {{"name", camera.name}, {"type", wide[int(camera.projection)]}};
+        if (isPlane) entry["type"] = camera.perspective ? "perspective" : "orthographic";
+        if (camera.lens) {
+            entry["aperture_diameter"] = camera.lens->apertureDiameter;
+            entry["focus_distance"] = camera.lens->focusDistance;
+        }
+        if (camera.exposure) entry["ev100"] = exposureValue(*camera.exposure);
+        list.push_back(std::move(entry));
     }
     return list;
 }

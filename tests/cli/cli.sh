@@ -58,6 +58,8 @@ expect 'hemisphere refuses a choice of lights' 2 'lights: is there for integrato
 expect 'whitted refuses --no-nee' 2 'no-nee: leaves' "$program" render sample:cornell --integrator whitted --no-nee
 expect 'a size of lights without pcss is refused' 2 'light-size: is there for' "$program" render sample:cornell --pipeline raster --light-size 1
 expect 'a checkpoint in no folder is refused before rendering' 1 'no-such-folder' "$program" render sample:cornell --checkpoint no-such-folder/x
+expect 'a tone curve without an image to show' 2 'tonemap: has no effect' "$program" render sample:cornell --tonemap aces -o a.exr
+expect 'an unknown tone curve' 2 'none, reinhard, filmic, aces' "$program" render sample:cornell --tonemap acid -o a.png
 expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0

@@ -73,6 +73,68 @@ TEST_F(GltfExtras, ExamplesOfTheSchemaLoad) {
     }
 }
 
+class GltfCameraExtras : public GltfExtras {
+protected:
+    Camera withCamera(const json& own, const std::string& type = "perspective") const {
+        GltfDocument file = GltfDocument::triangle();
+        json camera = {{"type", type}, {"extras", {{"heliograph", own}}}};
+        if (type == "perspective") camera["perspective"] = {{"yfov", 0.5}, {"znear", 0.1}};
+        if (type != "perspective")
+            camera["orthographic"] = {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}};
+        file.doc["cameras"] = {camera};
+        const Scene scene = load(file);
+        EXPECT_NO_THROW(scene.validate());
+        return scene.cameras.at(0);
+    }
+};
+
+TEST_F(GltfCameraExtras, CamerasTakeAProjectionALensAndAnExposure) {
+    const std::pair<const char*, Projection> projections[] = {{"plane", Projection::Plane},
+                                                              {"latLong", Projection::LatLong},
+                                                              {"equidistant", Projection::Equidistant},
+                                                              {"equisolid", Projection::Equisolid}};
+    std::vector<std::string> names;
+    for (const auto& [name, projection] : projections) {
+        const Camera camera = withCamera({{"projection", name}, {"fieldOfView", 2.5}});
+        EXPECT_EQ(camera.projection, projection);
+        EXPECT_EQ(camera.fieldOfView, 2.5f);
+        EXPECT_FALSE(camera.lens || camera.exposure);
+        names.push_back(name);
+    }
+    EXPECT_EQ(schema()["definitions"]["camera"]["properties"]["projection"]["enum"], names);
+    const Camera camera = withCamera(
+        {{"lens",
+          {{"apertureDiameter", 0.02}, {"focusDistance", 1.5}, {"blades", 7}, {"bladeRotation", 0.25}}},
+         {"exposure", {{"fNumber", 8}, {"shutter", 0.5}, {"iso", 200}}}});
+    EXPECT_EQ(camera.lens, (ThinLens{0.02f, 1.5f, 7, 0.25f}));
+    EXPECT_EQ(camera.exposure, (Exposure{8, 0.5f, 200}));
+    // f/2 before 24 mm: the image lies 12 mm / tan(yfov / 2) behind the lens when 1.5 m are in focus.
+    const double image = 0.012 / std::tan(0.25), focal = 1 / (1 / image + 1 / 1.5);
+    EXPECT_NEAR(withCamera({{"lens", {{"fNumber", 2}, {"focusDistance", 1.5}}}}).lens->apertureDiameter,
+                focal / 2, 1e-7);
+    EXPECT_NEAR(withCamera({{"lens", {{"fNumber", 2}}}}).lens->apertureDiameter, image / 2, 1e-7);
+}
+
+TEST_F(GltfCameraExtras, WhatDoesNotGoTogetherIsRefused) {
+    EXPECT_THROW(withCamera({{"lens", {{"focusDistance", 2}}}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}, {"apertureDiameter", 1}}}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}, {"blades", 2}}}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 0}}}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}}}, {"projection", "latLong"}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}}}}, "orthographic"), InputError);
+    EXPECT_THROW(withCamera({{"projection", "sphere"}}), InputError);
+    EXPECT_THROW(withCamera({{"fieldOfView", 7}}), InputError);
+    EXPECT_THROW(withCamera({{"exposure", {{"iso", 0}}}}), InputError);
+}
+
+/** Every property of a camera has an example, which the loader takes. */
+TEST_F(GltfCameraExtras, ExamplesOfTheSchemaLoad) {
+    for (const auto& [name, property] : schema()["definitions"]["camera"]["properties"].items()) {
+        ASSERT_TRUE(property.contains("examples")) << name;
+        EXPECT_NO_THROW(withCamera({{name, property["examples"][0]}})) << name;
+    }
+}
+
 TEST_F(GltfExtras, ScenesTakeAnEnvironment) {
     GltfDocument file = GltfDocument::triangle();
     file.doc["scenes"][0]["extras"]["heliograph"]["environment"] = {{"radiance", {1, 0.5, 0.25}}};

@@ -35,12 +35,20 @@ struct ImageF {
  * naming the file and the fault. */
 ImageF loadImage(const std::filesystem::path& file);
 
+/** How linear light becomes what a PNG or JPEG shows; shaders/shared/tone_curve.glsl says which curve is
+ * whose. */
+enum class ToneCurve : std::uint8_t { None, Reinhard, Filmic, Aces };
+struct Display {
+    double exposure = 0;  ///< stops: colour is multiplied by 2^exposure first
+    ToneCurve curve = ToneCurve::None;
+};
+
 /** Writes an image, whole or not at all: a temporary ".NAME.PID-N.partial" beside it, synced, then renamed. The
  * extension chooses: .exr float32 with all channels and metadata (an integer beyond 32 bits as its digits); .png
  * 8-bit and .jpg or .jpeg (quality 95, no subsampling) take R, G, B, clamp to 0..1, NaN becoming 0, and
- * sRGB-encode. The same image gives the same bytes. Throws InputError for an extension or folder that cannot be
+ * sRGB-encode, exposed and bent as `display` says; .exr stays as it is. The same image gives the same bytes. Throws InputError for an extension or folder that cannot be
  * written, or a missing channel. */
-void saveImage(const std::filesystem::path& file, const ImageF& image);
+void saveImage(const std::filesystem::path& file, const ImageF& image, const Display& display = {});
 
 /** Exact sRGB transfer curve (IEC 61966-2-1), scalar, any sign kept. */
 double srgbEncode(double linear);

@@ -162,6 +162,8 @@ struct RenderResult {
     std::vector<std::string> features;
     std::vector<std::pair<std::string, std::string>> skipped;  ///< what, why
     std::vector<std::string> warnings;
+    /** Stops by which what is displayed is exposed: the camera's exposureStops(), 0 where it has none. */
+    double exposure = 0;
     bool cancelled = false;
     std::string scene, device, version;
     std::uint32_t seed = 0;
@@ -200,7 +202,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/** Saves a result's image; see saveImage. Metadata as the contract says. */
-void save(const std::filesystem::path& file, const RenderResult& result);
+/** Saves a result's image; see saveImage. The camera's exposure adds to the display's. Metadata as the
+ * contract says. */
+void save(const std::filesystem::path& file, const RenderResult& result, const Display& display = {});
 
 }  // namespace helio

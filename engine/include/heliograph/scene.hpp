@@ -4,6 +4,8 @@
  * the scene says otherwise; counter-clockwise is front; cameras look along their node's -Z. Angles are
  * radians; colours are linear Rec.709; radiance is W/(sr m^2) per channel. See the project's contract.
  */
+#include <heliograph/camera.hpp>
+
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -162,16 +164,6 @@ struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
     std::vector<float> weights{};  ///< per morph target, for nodes without weights; empty: 0
-};
-
-struct Camera {
-    std::string name;
-    bool perspective = true;
-    float yfov = 0.6911112f;  ///< vertical field of view
-    float aspectRatio = 0;    ///< 0: the image's
-    float ymag = 1;           ///< orthographic half height
-    float znear = 0.01f;
-    float zfar = std::numeric_limits<float>::infinity();
 };
 
 struct PunctualLight {

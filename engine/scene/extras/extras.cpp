@@ -75,6 +75,32 @@ Scattering scatteringOf(const json& from) {
     return to;
 }
 
+/** Refuses a camera whose parts do not go together, which the schema does not say. */
+[[noreturn]] void refuseCamera(const std::string& file, int index, const std::string& member,
+                               const std::string& fault, const std::string& remedy) {
+    throw InputError(file, fmt::format("/cameras/{}/extras/heliograph/{}", index, member), fault, remedy);
+}
+
+ThinLens lensOf(const std::string& file, int index, const Camera& camera, const json& from) {
+    if (!camera.perspective || camera.projection != Projection::Plane)
+        refuseCamera(file, index, "lens", "belongs to a camera without perspective", "leave it out");
+    if (from.contains("fNumber") == from.contains("apertureDiameter"))
+        refuseCamera(file, index, "lens", "needs an aperture", "give either fNumber or apertureDiameter");
+    ThinLens to;
+    to.focusDistance = from.value("focusDistance", to.focusDistance);
+    if (from.contains("fNumber")) {
+        to = thinLens(camera, from["fNumber"].get<double>(), double(to.focusDistance),
+                      from.value("sensorHeight", 0.024));
+    } else {
+        to.apertureDiameter = from["apertureDiameter"].get<float>();
+    }
+    to.blades = from.value("blades", to.blades);
+    if (to.blades == 1 || to.blades == 2)
+        refuseCamera(file, index, "lens/blades", fmt::format("is {}", to.blades), "give 0, or 3 to 64");
+    to.bladeRotation = from.value("bladeRotation", to.bladeRotation);
+    return to;
+}
+
 Environment environmentOf(const std::string& file, const std::string& pointer, const json& from,
                           Scene& scene) {
     Environment to;
@@ -116,6 +142,27 @@ void readMaterial(const json& object, Material& material) {
     const json* const own = extrasOf(object);
     if (own == nullptr) return;
     if (own->contains("scattering")) material.scattering = scatteringOf((*own)["scattering"]);
+}
+
+void readCamera(const std::string& file, const json& object, int index, Camera& camera) {
+    const json* const own = extrasOf(object);
+    if (own == nullptr) return;
+    constexpr std::pair<const char*, Projection> projections[] = {{"plane", Projection::Plane},
+                                                                  {"latLong", Projection::LatLong},
+                                                                  {"equidistant", Projection::Equidistant},
+                                                                  {"equisolid", Projection::Equisolid}};
+    for (const auto& [name, projection] : projections) {
+        if (own->value("projection", "plane") == name) camera.projection = projection;
+    }
+    camera.fieldOfView = own->value("fieldOfView", camera.fieldOfView);
+    if (own->contains("lens")) camera.lens = lensOf(file, index, camera, (*own)["lens"]);
+    if (!own->contains("exposure")) return;
+    const json& from = (*own)["exposure"];
+    Exposure to;
+    to.fNumber = from.value("fNumber", to.fNumber);
+    to.shutterSeconds = from.value("shutter", to.shutterSeconds);
+    to.iso = from.value("iso", to.iso);
+    camera.exposure = to;
 }
 
 void readScene(const std::string& file, const std::string& pointer, const json& object, Scene& scene) {

@@ -1,3 +1,4 @@
+#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/build.hpp"
 
 #include <heliograph/error.hpp>
@@ -33,6 +34,7 @@ void buildCameras(const Asset& asset, helio::Scene& scene) {
         }
         camera.znear = float(znear);
         if (zfar > 0) camera.zfar = float(zfar);
+        extras::readCamera(asset.file(), from, int(scene.cameras.size()), camera);
         scene.cameras.push_back(std::move(camera));
     }
 }
