@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace helio::pack {
 namespace {
@@ -47,16 +48,21 @@ constexpr std::uint32_t kModelShift = 16;
 /** Packs textures once each for every way they are read, as colour or as data, and gives their place. */
 class TexturePacker {
 public:
-    TexturePacker(const Scene& scene, PackedScene& packed) : scene_(scene), packed_(packed) {}
+    TexturePacker(const Scene& scene, PackedScene& packed) : scene_(scene), packed_(packed) {
+        float factor = 1;
+        for (const Material& m : scene.materials)
+            factor = std::max({factor, m.emission.x, m.emission.y, m.emission.z});
+        brightest_ = 0x1p100f / factor;  // what a picture holds
+    }
 
-    /** Index into PackedScene::textures, or -1. */
-    int add(const TextureUse& use, bool color) {
+    /** Index into PackedScene::textures, or -1. What is not emission lies between 0 and 1. */
+    int add(const TextureUse& use, bool color, bool emission) {
         if (!use) return -1;
         if (use.texture >= int(scene_.textures.size()))
             throw InputError(scene_.name, "", fmt::format("texture {} does not exist", use.texture),
                              "name one of the scene's textures");
         const auto [place, isNew] =
-            packedTexture_.try_emplace({use.texture, color}, int(packed_.textures.size()));
+            packedTexture_.try_emplace({use.texture, color, emission}, int(packed_.textures.size()));
         if (!isNew) return place->second;
         const Texture& texture = scene_.textures[std::size_t(use.texture)];
         if (texture.image < 0 || texture.image >= int(scene_.images.size()))
@@ -72,7 +78,7 @@ public:
         if (texture.useMipmaps && color) flags |= kMipmaps;
         if (!color && eightBits) flags |= kLinear;
         packed_.linearTextures |= !color && eightBits;
-        packed_.textures.emplace_back(addImage(texture.image, color || !sixteenBits), image.width,
+        packed_.textures.emplace_back(addImage(texture.image, color || !sixteenBits, emission), image.width,
                                       image.height, flags);
         return place->second;
     }
@@ -80,8 +86,10 @@ public:
 private:
     /** Offset of an image's first texel in its array. Images are stored once however many textures share
      * them; 16-bit ones once for each way they are decoded. */
-    std::uint32_t addImage(int index, bool decode) {
-        const auto [place, isNew] = imageOffset_.try_emplace({index, decode}, 0u);
+    std::uint32_t addImage(int index, bool decode, bool emission) {
+        const bool floats =
+            std::holds_alternative<std::vector<float>>(scene_.images[std::size_t(index)].texels);
+        const auto [place, isNew] = imageOffset_.try_emplace({index, decode, floats && emission}, 0u);
         if (!isNew) return place->second;
         const TextureImage& image = scene_.images[std::size_t(index)];
         const std::size_t texels = std::size_t(image.width) * image.height;
@@ -101,8 +109,27 @@ private:
             place->second = checkedOffset(packed_.texelsFloat.size(), texels, index);
             for (std::size_t i = 0; i < texels; ++i)
                 packed_.texelsFloat.push_back(linearTexel(image, i, decode));
+            if (floats) clean(index, place->second, emission ? brightest_ : 1.0f);
         }
         return place->second;
+    }
+
+    /** Replaces what is no reflectance or radiance in an image of floats: NaN and negative values by 0,
+     * others above `largest` by that. */
+    void clean(int index, std::size_t first, float largest) {
+        std::uint64_t low = 0, high = 0;
+        for (std::size_t i = first; i < packed_.texelsFloat.size(); ++i)
+            for (glm::length_t c = 0; c < 4; ++c) {
+                float& value = packed_.texelsFloat[i][c];
+                if (value >= 0.0f && value <= largest) continue;
+                ++(value > largest ? high : low);
+                value = value > largest ? largest : 0.0f;
+            }
+        if (low + high > 0)
+            packed_.warnings.push_back(
+                fmt::format("image {}: {} values are negative or not numbers and taken as 0, {} are above {} "
+                            "and taken as that",
+                            index, low, high, largest));
     }
 
     std::uint32_t checkedOffset(std::size_t offset, std::size_t texels, int index) const {
@@ -127,8 +154,9 @@ private:
 
     const Scene& scene_;
     PackedScene& packed_;
-    std::map<std::pair<int, bool>, int> packedTexture_;
-    std::map<std::pair<int, bool>, std::uint32_t> imageOffset_;
+    float brightest_ = 0x1p100f;
+    std::map<std::tuple<int, bool, bool>, int> packedTexture_;
+    std::map<std::tuple<int, bool, bool>, std::uint32_t> imageOffset_;
 };
 
 glm::vec4 transformRow(const TextureUse& use, int row, std::uint32_t bits) {
@@ -228,7 +256,8 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
             const std::array<int, 2> sets = texcoordSets(material);
             for (const SampledTexture& texture : sampledTextures(material)) {
-                const int index = textures.add(*texture.use, texture.color);
+                const int index =
+                    textures.add(*texture.use, texture.color, texture.use == &material.emissiveTexture);
                 rows[texture.row] = transformRow(*texture.use, 0, std::uint32_t(index));
                 rows[texture.row + 1] = transformRow(*texture.use, 1, texcoordSlot(sets, *texture.use));
             }
