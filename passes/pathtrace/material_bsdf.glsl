@@ -23,7 +23,6 @@ const float LEAST_COSINE = 0.01;
 struct SurfaceBsdf {
     mat3 frame;  ///< tangent, bitangent, normal, turned to the ray's side
     vec3 wo;     ///< local
-    bool folds;  ///< the normal is not the surface's own
     bool unlit;
     vec3 albedo;  ///< of an unlit surface: what it shows
     uint model;   ///< 0: glTF's
@@ -89,7 +88,6 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
     vec3 normal = s.shading;
     if (HAS_NORMAL_MAPS) normal = side * (frame * mappedNormal(material, 16, uv, materialRow(material, 8).w));
     normal = bentTowards(normal, wo);
-    bsdf.folds = HAS_NORMALS || HAS_NORMAL_MAPS;
 
     if (HAS_GLTF) {
         int channel = 1;
@@ -138,7 +136,7 @@ vec3 ownLight(SurfaceBsdf bsdf) {
 
 ScatterValue localValue(SurfaceBsdf bsdf, vec3 wi) {
     ScatterValue v = noScattering();
-    if (HAS_GLTF && bsdf.model == 0u) v = gltfValue(bsdf.gltf, bsdf.wo, wi);
+    if (HAS_GLTF && bsdf.model == 0u) v = HAS_SPECULAR ? gltfValue(bsdf.gltf, bsdf.wo, wi) : lambertValue(bsdf.gltf.baseColor, bsdf.wo, wi);
     if (HAS_MODELS && bsdf.model != 0u) v = modelValue(bsdf.other, bsdf.wo, wi);
     return v;
 }
@@ -146,7 +144,12 @@ ScatterValue localValue(SurfaceBsdf bsdf, vec3 wi) {
 /** A direction drawn; what it is worth, but for mirrors, comes from surfaceValues. */
 SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
     ScatterSample chosen = noSample();
-    if (HAS_GLTF && bsdf.model == 0u) chosen = gltfSample(bsdf.gltf, bsdf.wo, vec3(u, choice));
+    if (HAS_GLTF && bsdf.model == 0u) {
+        if (HAS_SPECULAR)
+            chosen = gltfSample(bsdf.gltf, bsdf.wo, vec3(u, choice));
+        else
+            chosen = ScatterSample(cosineHemisphere(u), vec3(0.0), 1.0);
+    }
     if (HAS_MODELS && bsdf.model != 0u) chosen = modelSample(bsdf.other, bsdf.wo, vec3(u, choice));
     SurfaceSample r;
     r.direction = bsdf.frame * chosen.direction;
@@ -159,18 +162,16 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return r;
 }
 
-const bool HAS_FOLDS = HAS_NORMALS || HAS_NORMAL_MAPS;
-
 /** Values of a direction to a light, where one `asks`, and of the direction drawn: each of the lobe there, and of what
  * is mirrored to it. One loop, not unrolled: the code of all materials is in the kernel once. */
 SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, inout SurfaceSample next) {
     ScatterValue lit = noScattering(), drawn = noScattering();
-    const int ways = HAS_FOLDS ? 2 : 1;
+    const int ways = HAS_TILTED_LOBES ? 2 : 1;
     [[dont_unroll]] for (int i = asks ? 0 : ways; i < 2 * ways; ++i) {
         const bool isDrawn = i >= ways;
         const vec3 wi = isDrawn ? next.direction : toLight;
         const float height = dot(s.face, wi);
-        const bool above = height > 0.0, mirrors = HAS_FOLDS && (i & 1) == 1;
+        const bool above = height > 0.0, mirrors = HAS_TILTED_LOBES && (i & 1) == 1;
         const vec3 local = (wi - (mirrors ? 2.0 * height : 0.0) * s.face) * bsdf.frame;
         const bool counts = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
         const ScatterValue v = localValue(bsdf, local);

@@ -64,7 +64,7 @@ struct PathTracer::Impl {
             materialDefines_["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
         if (!camera_.texels.empty()) table_.emplace(makeBuffer(device, "pathtrace.camera", camera_.texels));
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
-        if (unrolled_) generated_ = unrolledScene(scene_.info().triangles, scene_.info().lights);
+        if (!scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
         declareTrace(film);
     }
 
@@ -72,8 +72,9 @@ struct PathTracer::Impl {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
         spec["ORTHOGRAPHIC"] = orthographic_;
-        if (!materialDefines_.empty()) spec.merge(scene_.constants({"ALBEDO_TABLES"}));
         spec.merge(SpecConstants(camera_.constants));
+        if (!materialDefines_.empty())
+            spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES"}));
         return spec;
     }
 
@@ -84,7 +85,7 @@ struct PathTracer::Impl {
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
         if (table_) defines["CAMERA_TABLE"] = "1";
-        if (!unrolled_ && defines.empty()) return built;
+        if (generated_.empty() && defines.empty()) return built;
         return compileVariant(built, {.defines = defines, .generated = generated_});
     }
 
@@ -235,7 +236,8 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
-    return {.tree = !choose || scene.triangleCount() > kUnrolledTriangles,
+    return {.tree = !choose || scene.triangleCount() > kWrittenOutTriangles,
+            .writeOutLargest = choose,
             .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
             .sampleSurfaces = options.nextEventEstimation,
             .lights = options.lights};

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace helio {
@@ -65,19 +66,19 @@ struct VecLess {
     }
 };
 
-/** One function over all triangles: the closest hit, or whether there is any. Slots are in scene order, so
- * that a slot is a g. */
+/** One function over all triangles: the closest hit, or whether there is any. */
 class Writer {
 public:
-    Writer(std::span<const glm::vec4> triangles, std::set<std::size_t> lights, bool any)
-        : triangles_(triangles), lights_(std::move(lights)), any_(any) {}
+    Writer(std::span<const glm::vec4> triangles, std::size_t firstSlot, std::set<std::size_t> lights,
+           bool any)
+        : triangles_(triangles), firstSlot_(firstSlot), lights_(std::move(lights)), any_(any) {}
 
     std::string write() {
         text_ = any_ ? "bool testAny(vec3 origin, vec3 direction, int source, int target, float nearest) {\n"
                        "    bool blocked = false;\n"
                      : "void testAll(vec3 origin, vec3 direction, int source, inout float nearest, out int "
-                       "slot) {\n"
-                       "    slot = -1;\n";
+                       "slot, out int g) {\n"
+                       "    slot = g = -1;\n";
         text_ +=
             "    const RayShear ray = shearOf(origin, direction);\n"
             "    float t;\n"
@@ -86,7 +87,7 @@ public:
         const std::size_t count = triangles_.size() / 3;
         for (std::size_t i = 0; i < count; ++i) {
             Quad quad;
-            if (i + 1 < count && makesQuad(corners(i), corners(i + 1), quad)) {
+            if (i + 1 < count && g(i + 1) == g(i) + 1 && makesQuad(corners(i), corners(i + 1), quad)) {
                 std::array<std::string, 4> q;
                 for (std::size_t c = 0; c < 4; ++c) q[c] = name(quad.corner[c]);
                 text_ += fmt::format("    hit = meetsQuad(ray, {}, {}, {}, {}, nearest, t, half_)", q[0],
@@ -106,10 +107,11 @@ public:
     }
 
 private:
-    Corners corners(std::size_t slot) const {
-        return {{glm::vec3(triangles_[slot * 3]), glm::vec3(triangles_[slot * 3 + 1]),
-                 glm::vec3(triangles_[slot * 3 + 2])}};
+    Corners corners(std::size_t i) const {
+        return {{glm::vec3(triangles_[i * 3]), glm::vec3(triangles_[i * 3 + 1]),
+                 glm::vec3(triangles_[i * 3 + 2])}};
     }
+    std::size_t g(std::size_t i) const { return glm::floatBitsToUint(triangles_[i * 3].w); }
 
     /** Name of a corner, declared when it is first used. */
     std::string name(const glm::vec3& p) {
@@ -120,24 +122,28 @@ private:
         return fmt::format("p{}", place->second);
     }
 
-    /** What comes of a hit of the `count` triangles from slot i on, which are in one plane. */
+    /** What comes of a hit of the `count` triangles from the i-th on, which are in one plane. */
     void finish(std::size_t i, std::size_t count) {
-        const auto excluded = [&](const char* what) {
-            return count == 1 ? fmt::format(" && {} != {}", what, i)
-                              : fmt::format(" && uint({} - {}) > 1u", what, i);
+        const auto excluded = [&](const char* what, std::size_t number) {
+            return count == 1 ? fmt::format(" && {} != {}", what, number)
+                              : fmt::format(" && uint({} - {}) > 1u", what, number);
         };
-        text_ += excluded("source");
+        const std::size_t slot = firstSlot_ + i;
+        text_ += excluded("source", slot);
         // Only lights are ever a shadow ray's target.
-        if (any_ && (lights_.contains(i) || (count == 2 && lights_.contains(i + 1))))
-            text_ += excluded("target");
+        if (any_ && (lights_.contains(g(i)) || (count == 2 && lights_.contains(g(i + 1)))))
+            text_ += excluded("target", g(i));
         if (any_)
             text_ += ";\n    blocked = blocked || hit;\n";
         else
-            text_ += fmt::format(";\n    nearest = hit ? t : nearest;\n    slot = hit ? {}{} : slot;\n", i,
-                                 count == 2 ? " + half_" : "");
+            text_ += fmt::format(
+                ";\n    nearest = hit ? t : nearest;\n    slot = hit ? {0}{2} : slot;\n    g = hit ? {1}{2} "
+                ": g;\n",
+                slot, g(i), count == 2 ? " + half_" : "");
     }
 
     std::span<const glm::vec4> triangles_;
+    std::size_t firstSlot_;
     std::set<std::size_t> lights_;
     bool any_;
     std::string text_;
@@ -146,8 +152,11 @@ private:
 
 }  // namespace
 
-std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const glm::vec4> lights) {
-    std::string text = "#define UNROLLED_SCENE\n";
+std::string unrolledScene(const PackedScene& packed) {
+    const std::vector<glm::vec4>& triangles = packed.writtenOut;
+    const std::vector<glm::vec4>& lights = packed.lights;
+    const std::size_t firstSlot = packed.firstWrittenOut;
+    std::string text = firstSlot == 0 ? "#define UNROLLED_SCENE\n" : "#define UNROLLED_BESIDE_TREE\n";
     if (lights.size() == kLightTexels) {
         text += "#define UNROLLED_LIGHT uvec4[](";
         for (std::size_t i = 0; i < lights.size(); ++i)
@@ -156,13 +165,11 @@ std::string unrolledScene(std::span<const glm::vec4> triangles, std::span<const 
                                 glm::floatBitsToUint(lights[i].z), glm::floatBitsToUint(lights[i].w));
         text += ")\n";
     }
-    std::set<std::size_t> lightTriangles;
-    for (std::size_t row = 0; row + kLightTexels <= lights.size(); row += kLightTexels)
-        if (glm::floatBitsToUint(lights[row + 2].w) <= std::uint32_t(LightKind::Parallelogram))
-            lightTriangles.insert(glm::floatBitsToUint(lights[row + 5].x));
+    const std::set<std::size_t> lightTriangles(packed.writtenOutEmitters.begin(),
+                                               packed.writtenOutEmitters.end());
     text += "#ifdef HELIOGRAPH_INTERSECTION_SCENE_HIT\n";
-    text += Writer(triangles, lightTriangles, false).write();
-    text += Writer(triangles, lightTriangles, true).write();
+    text += Writer(triangles, firstSlot, lightTriangles, false).write();
+    text += Writer(triangles, firstSlot, lightTriangles, true).write();
     text += "#endif\n";
     return text;
 }

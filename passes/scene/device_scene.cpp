@@ -40,6 +40,8 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
                   {"ENVIRONMENT_ROTATED", info_.environmentRotated},
                   {"HAS_LINEAR_TEXTURES", info_.linearTextures},
                   {"ALBEDO_TABLES", std::int32_t(info_.albedoTables)},
+                  {"HAS_ROUGH_FACETS", info_.roughFacets},
+                  {"HAS_TILTED_LOBES", info_.tiltedLobes},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
     const auto upload = [&](std::string_view name, auto& values, Format view) {
         using T = typename std::decay_t<decltype(values)>::value_type;

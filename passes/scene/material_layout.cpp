@@ -24,6 +24,9 @@ enum Row : std::uint32_t {
     kIridescenceThicknessRow = 38
 };
 
+/** SMOOTH_ALPHA of shaders/scattering/scatter.glsl: a narrower lobe is a mirror's. */
+constexpr float kSmoothAlpha = 1e-4f;
+
 bool hasSheen(const Material& m) {
     return m.sheenColor != glm::vec3(0.0f);
 }
@@ -76,6 +79,36 @@ std::uint32_t materialFeatures(const Material& m) {
     if (m.normalTexture && !m.unlit) bits |= kNormalMapFeature;
     if (m.alphaMode != AlphaMode::Opaque) bits |= kAlphaFeature;
     return bits == kDiffuseFeatures ? 0u : bits;
+}
+
+bool hasRoughFacets(const Material& m) {
+    if (m.unlit) return false;
+    if (m.scattering) return !(std::max(m.scattering->alpha.x, m.scattering->alpha.y) < kSmoothAlpha);
+    return isMoreThanDiffuse(m) &&
+           (!(m.roughness * m.roughness < kSmoothAlpha) || m.anisotropyStrength > 0.0f);
+}
+
+bool hasWideLobes(const Material& m) {
+    if (m.unlit) return false;
+    if (m.scattering) {
+        switch (m.scattering->model) {
+            case Scattering::Model::Mirror:
+            case Scattering::Model::ThinDielectric:
+                return false;
+            case Scattering::Model::Dielectric:
+            case Scattering::Model::Conductor:
+                return hasRoughFacets(m) || m.scattering->multipleScattering;
+            default:
+                return true;
+        }
+    }
+    if (materialFeatures(m) == 0 && glm::vec3(m.baseColor) == glm::vec3(0.0f))
+        return false;  // scatters nothing
+    const bool metal = m.metallic >= 1.0f && !m.metallicRoughnessTexture;
+    const bool glass = m.transmission >= 1.0f && !m.transmissionTexture;
+    const bool smoothCoat =
+        m.clearcoatRoughness * m.clearcoatRoughness < kSmoothAlpha && !m.clearcoatRoughnessTexture;
+    return hasRoughFacets(m) || !(metal || glass) || hasSheen(m) || (m.clearcoat > 0.0f && !smoothCoat);
 }
 
 std::vector<SampledTexture> sampledTextures(const Material& m) {

@@ -46,6 +46,11 @@ inline constexpr std::uint32_t kDiffuseFeatures = kGltfFeature | kDielectricFeat
 /** What the kernels that show this material need; 0 where it scatters as Lambert and nothing else. */
 std::uint32_t materialFeatures(const Material& material);
 
+/** Whether its microfacets, if any, have a width (SMOOTH_ALPHA); the clear coat's apart. */
+bool hasRoughFacets(const Material& material);
+/** Whether some of its light is scattered into a solid angle, not by mirrors and smooth glass alone. */
+bool hasWideLobes(const Material& material);
+
 /** A texture that kernels sample. */
 struct SampledTexture {
     const TextureUse* use = nullptr;

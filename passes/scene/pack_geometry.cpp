@@ -101,6 +101,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
             const std::uint32_t material = primitive.material < 0 ? std::uint32_t(scene.materials.size())
                                                                   : std::uint32_t(primitive.material);
             const Material& look = materialOf(scene, primitive);
+            packed.tiltedLobes |= !primitive.normals.empty() && hasWideLobes(look);
             const std::array<int, 2> sets = texcoordSets(look);
             const bool hasTangents = anyTangents && needsTangents(look);
             const std::vector<glm::vec4> cornerTangents =

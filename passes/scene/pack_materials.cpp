@@ -253,6 +253,8 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
         if (materialUsed[i]) {
             const std::uint32_t features = materialFeatures(material);
+            packed.roughFacets |= hasRoughFacets(material);
+            packed.tiltedLobes |= material.normalTexture && hasWideLobes(material);
             packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
             const std::array<int, 2> sets = texcoordSets(material);
             for (const SampledTexture& texture : sampledTextures(material)) {

@@ -1,6 +1,7 @@
 #include "passes/scene/packed_scene.hpp"
 
 #include "engine/scene/bvh.hpp"
+#include "passes/scene/large_triangles.hpp"
 #include "passes/scene/material_layout.hpp"
 
 #include <heliograph/error.hpp>
@@ -75,22 +76,51 @@ std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& sce
 
 namespace {
 
+/** The tree over all triangles but `left`, ascending. Its order goes by the triangles of the whole. */
+Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& left) {
+    if (left.empty()) return buildBvh(positions);
+    std::vector<std::uint32_t> rest;
+    std::vector<glm::vec3> corners;
+    rest.reserve(positions.size() / 3 - left.size());
+    corners.reserve(positions.size() - left.size() * 3);
+    auto next = left.begin();
+    for (std::uint32_t g = 0; g < positions.size() / 3; ++g) {
+        if (next != left.end() && *next == g) {
+            ++next;
+            continue;
+        }
+        rest.push_back(g);
+        corners.insert(corners.end(), positions.begin() + g * 3, positions.begin() + g * 3 + 3);
+    }
+    Bvh tree = buildBvh(corners);
+    for (std::uint32_t& place : tree.order) place = rest[place];
+    return tree;
+}
+
 /** Packs the accelerator; returns the triangle of every slot. */
 std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, const PackOptions& options,
                                       PackedScene& packed) {
     std::vector<std::uint32_t> order(packed.triangleCount);
     std::iota(order.begin(), order.end(), 0u);
+    packed.firstWrittenOut = packed.triangleCount <= kWrittenOutTriangles ? 0u : packed.triangleCount;
     if (!options.tree || packed.triangleCount == 0) return order;
     const auto start = std::chrono::steady_clock::now();
     packed.accelerator = options.accelerator;
+    packed.firstWrittenOut = packed.triangleCount;
     if (options.accelerator == AcceleratorKind::Bvh) {
-        Bvh tree = buildBvh(positions);
+        const std::vector<std::uint32_t> large =
+            options.writeOutLargest && packed.triangleCount > kWrittenOutTriangles
+                ? pack::largeTriangles(positions, kWrittenOutBesideTree)
+                : std::vector<std::uint32_t>();
+        Bvh tree = treeWithout(positions, large);
+        packed.firstWrittenOut = packed.triangleCount - std::uint32_t(large.size());
         packed.nodeCount = std::uint32_t(tree.nodes.size());
         packed.treeDepth = tree.depth;
         static_assert(sizeof(BvhNode) == 5 * sizeof(glm::uvec4));
         packed.nodes.resize(tree.nodes.size() * 5);
         std::memcpy(packed.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BvhNode));
         order = std::move(tree.order);
+        order.insert(order.end(), large.begin(), large.end());
     } else {
         Comparator built = buildComparator(options.accelerator, positions);
         packed.nodeCount = std::uint32_t(built.words.size());
@@ -132,6 +162,13 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
         packed.triangles.push_back(withBits(positions[g * 3 + 0], g));
         packed.triangles.push_back(withBits(positions[g * 3 + 1], surfaces[g].instance));
         packed.triangles.push_back(withBits(positions[g * 3 + 2], surfaces[g].material));
+    }
+    packed.writtenOut.assign(packed.triangles.begin() + std::ptrdiff_t(packed.firstWrittenOut) * 3,
+                             packed.triangles.end());
+    for (std::size_t slot = packed.firstWrittenOut; slot < order.size(); ++slot) {
+        const std::uint32_t material = surfaces[order[slot]].material;
+        if (material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f))
+            packed.writtenOutEmitters.push_back(order[slot]);
     }
     const NotShown absent = materialsNotShown(scene, materialUsed);
     packed.skipped.assign(absent.anywhere.begin(), absent.anywhere.end());

@@ -26,6 +26,9 @@ inline constexpr std::uint32_t kMaterialTexels = 43;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
 
+/** Triangles up to which a scene is written out as code, and as many of a larger one beside its tree. */
+inline constexpr std::uint32_t kWrittenOutTriangles = 64, kWrittenOutBesideTree = 24;
+
 /** How a light is sampled; the values are those of shaders/scene/lights.glsl. */
 enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional, Environment };
 /** Texels before the image in PackedScene::environmentMap; shaders/scene/environment.glsl names them. */
@@ -38,6 +41,9 @@ struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
      * order and `nodes` is empty. */
     bool tree = true;
+    /** Besides the tree, the largest triangles are kept out of it for kernels to hold as code
+     * (PackedScene::writtenOut). Of Bvh alone. */
+    bool writeOutLargest = false;
     /** What finds triangles along a ray, not Auto; only Bvh puts triangles in the order of its leaves. */
     AcceleratorKind accelerator = AcceleratorKind::Bvh;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
@@ -65,6 +71,11 @@ struct PackedScene {
      * without a tree. */
     std::vector<glm::uvec4> nodes;
     AcceleratorKind accelerator = AcceleratorKind::Bvh;  ///< of `nodes`
+    /** Texels of `triangles` that are in no tree, for kernels to hold as code: of the slots from
+     * firstWrittenOut to the last. All of a small scene without a tree. */
+    std::vector<glm::vec4> writtenOut;
+    std::uint32_t firstWrittenOut = 0;
+    std::vector<std::uint32_t> writtenOutEmitters;  ///< g of those that emit
     /** 3 texels a g (one per vertex): unit world-space shading normal, 0. Empty where no mesh has normals. */
     std::vector<glm::vec4> normals;
     /** 3 texels a g: u, v in the first set that the material's textures name, then in the second; 0 where the
@@ -116,6 +127,9 @@ struct PackedScene {
     bool baseColorTextures = false;
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
     std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
+    bool roughFacets = false;            ///< some material in use has microfacets of a width
+    bool tiltedLobes =
+        false;  ///< some normal of vertices or of a map is that of a surface with more than mirrors
     bool doubleSidedEmission = false;
     /** "WHAT", "WHY" of everything in the scene that no kernel shows (yet). */
     std::vector<std::pair<std::string, std::string>> skipped;

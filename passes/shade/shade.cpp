@@ -98,7 +98,8 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
                                     "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
     if (scene_.info().materialFeatures != 0) {
         common.materials["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
-        common.spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_LINEAR_TEXTURES"}));
+        common.spec.merge(scene_.constants(
+            {"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES", "HAS_LINEAR_TEXTURES"}));
     }
     // Without any mip level the trilinear filter is the bilinear.
     const bool bilinear = filter_ == TextureFilter::Trilinear && !mips_.needed();

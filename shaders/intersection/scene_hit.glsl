@@ -1,6 +1,7 @@
 #ifndef HELIOGRAPH_INTERSECTION_SCENE_HIT
 #define HELIOGRAPH_INTERSECTION_SCENE_HIT
-/** @file What a ray meets in the scene, through the tree or, where it is written out, by testing each triangle. */
+/** @file What a ray meets in the scene, through the tree, by testing each triangle where they are written out, or by
+ * both: triangles that most rays come near are tested first, and the tree, where it is entered at all, holds the rest. */
 #ifdef ACCELERATOR
 #include "shaders/intersection/comparators.glsl"
 #else
@@ -20,8 +21,19 @@ int closestHit(vec3 origin, vec3 direction, int source, out float distance, out 
     slot = -1;
     if (TRIANGLE_COUNT == 0) return 0;
 #ifdef UNROLLED_SCENE
-    testAll(origin, direction, source, distance, slot);
+    int g;
+    testAll(origin, direction, source, distance, slot, g);
     return 0;
+#elif defined(UNROLLED_BESIDE_TREE)
+    int g;
+    testAll(origin, direction, source, distance, slot, g);
+    Traversal t = beginTraversal(origin, direction, source, NO_TARGET, distance);
+    t.slot = slot;
+    t.g = g;
+    while (isBusy(t)) takeTurn(t, false);
+    distance = t.nearest;
+    slot = t.slot;
+    return t.steps;
 #else
     return traverse(origin, direction, false, source, NO_TARGET, distance, slot);
 #endif
@@ -38,8 +50,15 @@ int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit,
 #else
     float nearest = limit;
     int slot;
+#ifdef UNROLLED_BESIDE_TREE
+    const bool blocked = limit > 0.0 && testAny(origin, direction, source, target.x, limit);
+    nearest = blocked ? 0.0 : limit;
+#endif
     const int steps = traverse(origin, direction, true, source, target, nearest, slot);
     hit = slot >= 0;
+#ifdef UNROLLED_BESIDE_TREE
+    hit = hit || blocked;
+#endif
     return steps;
 #endif
 }

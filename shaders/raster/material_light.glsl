@@ -35,7 +35,7 @@ vec3 valueTowards(SurfaceBsdf bsdf, SurfacePoint s, vec3 wi) {
     vec3 value = vec3(0.0);
     vec3 local = wi * bsdf.frame;
     if (height > 0.0 && local.z > 0.0) value += localValue(bsdf, local).value;
-    if (HAS_FOLDS) {
+    if (HAS_TILTED_LOBES) {
         vec3 mirrored = (wi - 2.0 * height * s.face) * bsdf.frame;
         if (height > 0.0 && mirrored.z > 0.0) value += localValue(bsdf, mirrored).value;
     }

@@ -27,6 +27,10 @@ layout(set = 0, binding = 37) uniform samplerBuffer uTangents;  ///< 3 texels a 
 const uint MATERIAL_FEATURES = SURFACE_MATERIALS;
 /** First texel of the tables behind the materials. */
 layout(constant_id = 130) const int ALBEDO_TABLES = 0;
+/** Some material has microfacets of a width; else all that is not diffuse is a mirror or smooth glass. */
+layout(constant_id = 131) const bool HAS_ROUGH_FACETS = true;
+/** Some surface whose lobes have a width has vertex normals or a normal map, which tilt them. */
+layout(constant_id = 132) const bool HAS_TILTED_LOBES = true;
 const bool HAS_GLTF = (MATERIAL_FEATURES & (1u << 0)) != 0u;
 const bool HAS_TRANSMISSION = (MATERIAL_FEATURES & (1u << 1)) != 0u;
 const bool HAS_CLEARCOAT = (MATERIAL_FEATURES & (1u << 2)) != 0u;
@@ -141,7 +145,7 @@ GltfSurface gltfSurface(int material, vec3 color, vec4 uv, bool front, int chann
     s.f0 = min(normalReflectance(index) * specularColor, vec3(1.0)) * specular;
     s.f90 = specular;
     const float alpha = roughness * roughness;
-    s.alpha = vec2(alpha);
+    s.alpha = vec2(HAS_ROUGH_FACETS ? alpha : 0.0);
     s.transmission = 0.0;
     s.thin = true;
     s.eta = 1.0;
@@ -228,7 +232,7 @@ ModelSurface modelSurface(int material, uint flags, vec3 color, bool front) {
     m.k = row41.xyz;
     m.exponent = row41.w;
     m.eta = front ? m.n.x : 1.0 / m.n.x;
-    m.facets = Microfacets(resolvedAlpha(row42.xy), (flags & MATERIAL_BECKMANN) != 0u);
+    m.facets = Microfacets(HAS_ROUGH_FACETS ? resolvedAlpha(row42.xy) : vec2(0.0), (flags & MATERIAL_BECKMANN) != 0u);
     m.schlick = (flags & MATERIAL_SCHLICK) != 0u;
     m.compensated = (flags & MATERIAL_COMPENSATED) != 0u;
     return m;

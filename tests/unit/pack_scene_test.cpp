@@ -1,5 +1,6 @@
 // The flattened scene: order and ids, mirrored transforms, the light table, what is refused.
 #include "passes/scene/alias_table.hpp"
+#include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <heliograph/error.hpp>
@@ -41,6 +42,99 @@ Scene twoInstances() {
 
 std::uint32_t bits(float value) {
     return glm::floatBitsToUint(value);
+}
+
+Material withScattering(Scattering::Model model, float alpha) {
+    Material m;
+    m.scattering = Scattering{};
+    m.scattering->model = model;
+    m.scattering->alpha = glm::vec2(alpha);
+    return m;
+}
+
+TEST(PackScene, LobesAreKnownByTheirMaterials) {
+    using Model = Scattering::Model;
+    Material diffuse, black, polished, brushed, glass, halfGlass, unlit;
+    diffuse.metallic = diffuse.specular = 0;
+    black = diffuse;
+    black.baseColor = glm::vec4(0, 0, 0, 1);
+    polished.roughness = 0;
+    brushed.roughness = 0.3f;
+    glass.metallic = glass.roughness = 0;
+    halfGlass = glass;
+    glass.transmission = 1;
+    halfGlass.transmission = 0.5f;
+    unlit.unlit = true;
+    struct Expected {
+        const char* name;
+        Material material;
+        bool rough, wide;
+    };
+    for (const Expected& e : {Expected{"diffuse", diffuse, false, true},
+                              {"black", black, false, false},
+                              {"polished metal", polished, false, false},
+                              {"brushed metal", brushed, true, true},
+                              {"glass", glass, false, false},
+                              {"half glass", halfGlass, false, true},
+                              {"unlit", unlit, false, false},
+                              {"mirror", withScattering(Model::Mirror, 0), false, false},
+                              {"smooth dielectric", withScattering(Model::Dielectric, 0), false, false},
+                              {"rough dielectric", withScattering(Model::Dielectric, 0.1f), true, true},
+                              {"rough conductor", withScattering(Model::Conductor, 0.1f), true, true},
+                              {"Phong", withScattering(Model::Phong, 0), false, true}}) {
+        EXPECT_EQ(pack::hasRoughFacets(e.material), e.rough) << e.name;
+        EXPECT_EQ(pack::hasWideLobes(e.material), e.wide) << e.name;
+    }
+}
+
+TEST(PackScene, TiltedLobesTakeNormalsOnSurfacesThatNeedThem) {
+    Scene scene = twoInstances();
+    scene.materials[0].roughness = 0;  // a mirror
+    scene.meshes[0].primitives[0].normals.assign(4, glm::vec3(0, 0, 1));
+    EXPECT_FALSE(packScene(scene).tiltedLobes);
+    EXPECT_FALSE(packScene(scene).normals.empty());
+    scene.materials[0].roughness = 0.5f;
+    EXPECT_TRUE(packScene(scene).tiltedLobes);
+    EXPECT_TRUE(packScene(scene).roughFacets);
+}
+
+/** A square floor of two triangles, of which the first is large only in the box of the whole, and small ones.
+ */
+Scene floorAndPebbles(int pebbles) {
+    Scene scene;
+    Primitive p;
+    p.positions = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}};
+    p.indices = {0, 2, 1, 0, 3, 2};
+    for (int i = 0; i < pebbles; ++i) {
+        const float x = -0.9f + 1.8f * float(i) / float(pebbles);
+        const auto first = std::uint32_t(p.positions.size());
+        p.positions.insert(p.positions.end(), {{x, 0.01f, 0}, {x + 0.01f, 0.01f, 0}, {x, 0.02f, 0.01f}});
+        p.indices.insert(p.indices.begin(), {first, first + 1, first + 2});  // the floor comes last
+    }
+    scene.meshes.push_back({"mesh", {p}});
+    Node node;
+    node.mesh = 0;
+    scene.nodes = {node};
+    scene.roots = {0};
+    return scene;
+}
+
+TEST(PackScene, LargeTrianglesAreWrittenOutBesideTheTree) {
+    const PackedScene packed = packScene(floorAndPebbles(100), {.writeOutLargest = true});
+    ASSERT_EQ(packed.triangleCount, 102u);
+    EXPECT_EQ(packed.firstWrittenOut, 100u);
+    ASSERT_EQ(packed.writtenOut.size(), 6u);
+    EXPECT_EQ(bits(packed.writtenOut[0].w), 100u);
+    EXPECT_EQ(bits(packed.writtenOut[3].w), 101u);
+    EXPECT_TRUE(packed.writtenOutEmitters.empty());
+    std::set<std::uint32_t> seen;
+    for (std::uint32_t slot = 0; slot < 102; ++slot) seen.insert(bits(packed.triangles[slot * 3].w));
+    EXPECT_EQ(seen.size(), 102u);
+
+    EXPECT_TRUE(packScene(floorAndPebbles(100)).writtenOut.empty());
+    const PackedScene small = packScene(floorAndPebbles(10), {.tree = false});
+    EXPECT_EQ(small.writtenOut, small.triangles);
+    EXPECT_EQ(small.firstWrittenOut, 0u);
 }
 
 TEST(PackScene, TrianglesAreInSceneOrderWithoutATree) {
@@ -127,7 +221,7 @@ TEST(PackScene, AnyTwoTextureCoordinateSetsArePacked) {
     EXPECT_EQ(bits(packed.materials[6].w), 1u);
     material.baseColorTexture.texcoord = 2;
     EXPECT_EQ(firstTexcoords(), glm::vec4(2, -2, 0, 0));  // one set serves both
-    material.baseColorTexture.texcoord = 4;  // not there
+    material.baseColorTexture.texcoord = 4;               // not there
     EXPECT_EQ(firstTexcoords(), glm::vec4(0, 0, 2, -2));
     primitive.texcoords.clear();
     EXPECT_EQ(firstTexcoords(), glm::vec4(0));
