@@ -7,6 +7,7 @@
  */
 #include <heliograph/image.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -25,6 +26,20 @@ struct DecodedImage {
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> texels;
 };
 
+/** A few bytes can hold an image of any size. Those out of all proportion to their files share one allowance;
+ * an image of one colour, which is kept as one texel, needs none of it. */
+class ImageBudget {
+public:
+    /** Whether an image may take `bytes` in memory, from a file of `encoded` ones. Thread safe. */
+    bool take(std::uint64_t bytes, std::uint64_t encoded) {
+        constexpr std::uint64_t proportion = 200, allowance = std::uint64_t(112) << 20;
+        return bytes / proportion <= encoded || (used_ += bytes) <= allowance;
+    }
+
+private:
+    std::atomic<std::uint64_t> used_{0};
+};
+
 /** What the module exports. Every function returns what went wrong, empty for success. */
 class ImageBackend {
 public:
@@ -32,9 +47,10 @@ public:
     virtual std::string read(const std::filesystem::path& file, ImageF& image) const = 0;
     /** `format` is a file extension without its dot. */
     virtual std::string decode(std::span<const std::byte> file, const std::string& format,
-                               DecodedImage& image) const = 0;
+                               ImageBudget& budget, DecodedImage& image) const = 0;
     /** The same of a file of any format that the module knows. */
-    virtual std::string decodeFile(const std::filesystem::path& file, DecodedImage& image) const = 0;
+    virtual std::string decodeFile(const std::filesystem::path& file, ImageBudget& budget,
+                                   DecodedImage& image) const = 0;
     /** float32, all channels and the metadata. */
     virtual std::string encodeExr(const ImageF& image, std::vector<std::byte>& file) const = 0;
     /** 8-bit R, G, B, already encoded. `format` is png or jpg. */
@@ -53,6 +69,6 @@ std::string pngFault(std::span<const std::byte> file);
 
 /** Decodes an image file held in memory, PNG, JPEG or WebP by its first bytes. Returns the fault, empty for
  * success. */
-std::string decodeImage(std::span<const std::byte> file, DecodedImage& image);
+std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image);
 
 }  // namespace helio

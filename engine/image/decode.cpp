@@ -74,11 +74,11 @@ std::string pngFault(std::span<const std::byte> file) {
     return "is cut off";
 }
 
-std::string decodeImage(std::span<const std::byte> file, DecodedImage& image) {
+std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image) {
     if (std::string fault = pngFault(file); !fault.empty()) return fault;
-    if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", image);
-    if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", image);
-    if (isWebp(file)) return imageBackend().decode(file, "webp", image);
+    if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", budget, image);
+    if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", budget, image);
+    if (isWebp(file)) return imageBackend().decode(file, "webp", budget, image);
     return "is neither PNG nor JPEG nor WebP";
 }
 

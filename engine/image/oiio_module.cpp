@@ -6,6 +6,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -47,9 +48,8 @@ ImageSpec readHints() {
 }
 
 template <class T>
-void spreadToRgba(const std::vector<T>& stored, std::size_t channels, T opaque, std::vector<T>& rgba) {
+void spreadToRgba(const std::vector<T>& stored, std::size_t channels, T opaque, T* rgba) {
     const std::size_t texels = stored.size() / channels;
-    rgba.resize(texels * 4);
     const std::size_t colors = channels >= 3 ? 3 : 1;
     for (std::size_t i = 0; i < texels; ++i) {
         const T* const from = &stored[i * channels];
@@ -58,30 +58,97 @@ void spreadToRgba(const std::vector<T>& stored, std::size_t channels, T opaque, 
     }
 }
 
-template <class T>
-std::string readTexels(ImageInput& input, const ImageSpec& spec, T opaque, DecodedImage& image) {
-    const auto channels = std::size_t(spec.nchannels);
-    std::vector<T> stored(std::size_t(spec.width) * std::size_t(spec.height) * channels);
-    if (!input.read_image(0, 0, 0, -1, OIIO::BaseTypeFromC<T>::value, stored.data())) {
-        return oneLine(input.geterror());
-    }
-    std::vector<T>& texels = image.texels.emplace<std::vector<T>>();
-    if (channels == 4) {
-        texels = std::move(stored);
-    } else {
-        spreadToRgba(stored, channels, opaque, texels);
-    }
-    return {};
+std::string tooLarge(const ImageSpec& spec, std::uint64_t encoded) {
+    return "unfolds to " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " from " +
+           std::to_string(encoded) + " bytes";
 }
 
-std::string readAnyTexels(ImageInput& input, const ImageSpec& spec, DecodedImage& image) {
+/** Rows are read in strips. As long as all texels are equal none is stored; a large image of one colour ends
+ * as one texel. */
+template <class T>
+class TexelReader {
+public:
+    TexelReader(ImageInput& input, const ImageSpec& spec, T opaque, std::uint64_t encoded,
+                ImageBudget& budget)
+        : input_(input),
+          spec_(spec),
+          opaque_(opaque),
+          encoded_(encoded),
+          budget_(budget),
+          rowTexels_(std::size_t(spec.width)) {}
+
+    std::string read(DecodedImage& image) {
+        constexpr std::size_t smallImage = std::size_t(1) << 18;
+        const std::size_t texels = rowTexels_ * std::size_t(spec_.height);
+        if (texels <= smallImage && !allocate()) return tooLarge(spec_, encoded_);
+        // A tiled image is read whole: its strips would be as high as its tiles.
+        const bool isTiled = spec_.tile_width != 0;
+        const int strip = isTiled ? spec_.height : 64;
+        std::vector<T> stored, spread;
+        for (int y = 0; y < spec_.height; y += strip) {
+            const int rows = std::min(strip, spec_.height - y);
+            const std::size_t size = rowTexels_ * std::size_t(rows);
+            if (isTiled && !budget_.take(size * channels() * sizeof(T), encoded_))
+                return tooLarge(spec_, encoded_);
+            stored.resize(size * channels());
+            const auto type = OIIO::BaseTypeFromC<T>::value;
+            const bool isRead = isTiled ? input_.read_image(0, 0, 0, -1, type, stored.data())
+                                        : input_.read_scanlines(0, 0, y, y + rows, 0, 0, spec_.nchannels,
+                                                                type, stored.data());
+            if (!isRead) return oneLine(input_.geterror());
+            spread.resize(size * 4);
+            spreadToRgba(stored, channels(), opaque_, spread.data());
+            if (y == 0) std::copy_n(spread.data(), 4, color_.data());
+            if (texels_.empty() && !isOneColor(spread) && !allocate()) return tooLarge(spec_, encoded_);
+            if (!texels_.empty())
+                std::copy(spread.begin(), spread.end(), texels_.begin() + std::ptrdiff_t(rowTexels_ * 4) * y);
+        }
+        const bool isOne = texels_.empty();
+        image.width = isOne ? 1 : std::uint32_t(spec_.width);
+        image.height = isOne ? 1 : std::uint32_t(spec_.height);
+        if (isOne) texels_.assign(color_.begin(), color_.end());
+        image.texels = std::move(texels_);
+        return {};
+    }
+
+private:
+    std::size_t channels() const { return std::size_t(spec_.nchannels); }
+
+    bool isOneColor(const std::vector<T>& rgba) const {
+        for (std::size_t i = 0; i < rgba.size(); i += 4) {
+            if (!std::equal(color_.begin(), color_.end(), &rgba[i])) return false;
+        }
+        return true;
+    }
+
+    /** Room for all texels, of the colour that those so far have. */
+    bool allocate() {
+        const std::size_t values = rowTexels_ * std::size_t(spec_.height) * 4;
+        if (!budget_.take(values * sizeof(T), encoded_)) return false;
+        texels_.resize(values);
+        for (std::size_t i = 0; i < values; i += 4) std::copy_n(color_.data(), 4, &texels_[i]);
+        return true;
+    }
+
+    ImageInput& input_;
+    const ImageSpec& spec_;
+    T opaque_;
+    std::uint64_t encoded_;
+    ImageBudget& budget_;
+    std::size_t rowTexels_;
+    std::array<T, 4> color_{};
+    std::vector<T> texels_;
+};
+
+std::string readAnyTexels(ImageInput& input, const ImageSpec& spec, std::uint64_t encoded,
+                          ImageBudget& budget, DecodedImage& image) {
     const std::uint64_t texels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
     if (std::string fault = checkSize(spec, texels, maximumTexels); !fault.empty()) return fault;
-    image.width = std::uint32_t(spec.width);
-    image.height = std::uint32_t(spec.height);
-    if (spec.format == TypeDesc::UINT8) return readTexels<std::uint8_t>(input, spec, 255, image);
-    if (spec.format == TypeDesc::UINT16) return readTexels<std::uint16_t>(input, spec, 65535, image);
-    return readTexels<float>(input, spec, 1.0f, image);
+    if (spec.format == TypeDesc::UINT8)
+        return TexelReader<std::uint8_t>(input, spec, 255, encoded, budget).read(image);
+    if (spec.format == TypeDesc::UINT16)
+        return TexelReader<std::uint16_t>(input, spec, 65535, encoded, budget).read(image);
+    return TexelReader<float>(input, spec, 1.0f, encoded, budget).read(image);
 }
 
 void readMetadata(const ImageSpec& spec, ImageF& image) {
@@ -128,25 +195,26 @@ public:
         return oneLine(error.what());
     }
 
-    std::string decode(std::span<const std::byte> file, const std::string& format,
+    std::string decode(std::span<const std::byte> file, const std::string& format, ImageBudget& budget,
                        DecodedImage& image) const override try {
-        if (format == "webp") return decodeWebp(file, maximumTexels, image);
+        if (format == "webp") return decodeWebp(file, maximumTexels, budget, image);
         OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::create(format);
         ImageSpec spec;
         if (!input || !input->set_ioproxy(&memory)) return oneLine(OIIO::geterror());
         if (!input->open("texture." + format, spec, hints)) return oneLine(input->geterror());
-        return readAnyTexels(*input, spec, image);
+        return readAnyTexels(*input, spec, file.size(), budget, image);
     } catch (const std::exception& error) {
         return oneLine(error.what());
     }
 
-    std::string decodeFile(const std::filesystem::path& file, DecodedImage& image) const override try {
+    std::string decodeFile(const std::filesystem::path& file, ImageBudget& budget,
+                           DecodedImage& image) const override try {
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::open(file.string(), &hints);
         if (!input) return oneLine(OIIO::geterror());
-        return readAnyTexels(*input, input->spec(), image);
+        return readAnyTexels(*input, input->spec(), std::filesystem::file_size(file), budget, image);
     } catch (const std::exception& error) {
         return oneLine(error.what());
     }

@@ -4,7 +4,8 @@
 
 namespace helio {
 
-std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTexels, DecodedImage& image) {
+std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTexels, ImageBudget& budget,
+                       DecodedImage& image) {
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.data());
     WebPBitstreamFeatures features;
     if (WebPGetFeatures(bytes, file.size(), &features) != VP8_STATUS_OK) return "is no WebP, or cut off";
@@ -12,6 +13,10 @@ std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTex
     const auto width = std::uint32_t(features.width), height = std::uint32_t(features.height);
     if (std::uint64_t(width) * height > maximumTexels)
         return "is too large: " + std::to_string(width) + " x " + std::to_string(height);
+    if (!budget.take(std::uint64_t(width) * height * 4, file.size())) {
+        return "unfolds to " + std::to_string(width) + " x " + std::to_string(height) + " from " +
+               std::to_string(file.size()) + " bytes";
+    }
     std::vector<std::uint8_t> texels(std::size_t(width) * height * 4);
     if (WebPDecodeRGBAInto(bytes, file.size(), texels.data(), texels.size(), int(width) * 4) == nullptr)
         return "is damaged or cut off";

@@ -5,6 +5,7 @@
 namespace helio {
 
 /** As ImageBackend::decode. */
-std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTexels, DecodedImage& image);
+std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTexels, ImageBudget& budget,
+                       DecodedImage& image);
 
 }  // namespace helio

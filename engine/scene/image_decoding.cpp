@@ -14,12 +14,13 @@ std::vector<DecodingResult> decodeImages(const std::vector<EncodedImage>& images
         imageBackend();  // its own failure is not an image's
         monitor.report("images", 0);
     }
+    ImageBudget budget;
     std::atomic<std::size_t> next{0};
     std::atomic<bool> isStopped{false};
     const auto decode = [&](std::size_t i) {
         DecodedImage decoded;
         results[i].place = images[i].place;
-        results[i].fault = decodeImage(images[i].bytes, decoded);
+        results[i].fault = decodeImage(images[i].bytes, budget, decoded);
         results[i].image = {images[i].name, decoded.width, decoded.height, std::move(decoded.texels)};
     };
     const auto help = [&] {

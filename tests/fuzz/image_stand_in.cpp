@@ -7,14 +7,14 @@ namespace {
 class StandIn final : public ImageBackend {
 public:
     std::string read(const std::filesystem::path&, ImageF&) const override { return "is not read here"; }
-    std::string decode(std::span<const std::byte> file, const std::string&,
+    std::string decode(std::span<const std::byte> file, const std::string&, ImageBudget&,
                        DecodedImage& image) const override {
         if (file.size() % 16 == 0) return "is not decoded here";
         image.width = image.height = 1;
         image.texels = std::vector<std::uint8_t>(4, 255);
         return {};
     }
-    std::string decodeFile(const std::filesystem::path&, DecodedImage&) const override {
+    std::string decodeFile(const std::filesystem::path&, ImageBudget&, DecodedImage&) const override {
         return "is not decoded here";
     }
     std::string encodeExr(const ImageF&, std::vector<std::byte>&) const override {

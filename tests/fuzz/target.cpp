@@ -71,7 +71,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 #if defined(FUZZ_IMAGE)
     const auto bytes = std::as_bytes(input);
     helio::DecodedImage image;
-    const std::string fault = helio::decodeImage(bytes, image);
+    helio::ImageBudget budget;
+    const std::string fault = helio::decodeImage(bytes, budget, image);
     if (fault.find('\n') != std::string::npos) fail("more than one line: " + fault);
     if (fault.empty() && image.width == 0) fail("an image without texels");
 #elif defined(FUZZ_MTL)

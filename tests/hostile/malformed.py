@@ -355,6 +355,10 @@ def obj_files():
         b"f " + b" ".join(b"%d" % (i + 1) for i in range(100000)) + b"\n")
     obj("polygon-crosses-itself", SQUARE + b"f 1 3 2 4\nf 1 1 2 2 3 3\n")
     obj("long-line", SQUARE + b"f 1 2 3\n# " + b"x" * 3000000 + b"\nf 1 2 9\n")
+    obj("cr-line-ends", SQUARE.replace(b"\n", b"\r") + b"v 0 0 0\r" * 500000 + b"f 1 2 9999999\r")
+    obj("cr-and-mark", b"\xef\xbb\xbf" + SQUARE.replace(b"\n", b"\r") + b"f 1 2 5\r")
+    obj("utf16", (SQUARE + b"f 1 2 3\n").decode().encode("utf-16"))
+    obj("many-libraries", SQUARE + b"".join(b"mtllib %x\n" % i for i in range(100000)) + b"f 1 2 3\n")
     obj("long-name", SQUARE + b"usemtl " + b"x" * 1000000 + b"\nf 1 2 3\n")
     obj("many-materials", SQUARE + b"".join(b"usemtl m%d\nf 1 2 3\n" % i for i in range(70000)))
     use = SQUARE + b"usemtl a\nf 1 2 3\n"
@@ -371,6 +375,18 @@ def obj_files():
                        ("spectral", b"Kd spectral file.rfl 1")):
         obj("mtl-" + name, b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\n" + text + b"\n",
             garbage__png=b"garbage", cut__png=good.png()[:40])
+    def bomb(width, height, odd):  # two colours, hardly any bytes
+        packer = zlib.compressobj()
+        row = b"\0" * (1 + 3 * width)
+        data = packer.compress(row[:-1] + odd)
+        data += b"".join(packer.compress(row) for _ in range(height - 1)) + packer.flush()
+        def chunk(name, content):
+            return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+        return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                chunk(b"IDAT", data) + chunk(b"IEND", b""))
+    obj("map-bomb", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\nmap_Kd bomb.png\n", bomb__png=bomb(8000, 8000, b"\1"))
+    webp = b"RIFF\x1e\0\0\0WEBPVP8L\x0a\0\0\0\x2f" + struct.pack("<I", 16382 | 16382 << 14) + b"\0" * 9
+    obj("map-webp-bomb", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\nmap_Kd bomb.webp\n", bomb__webp=webp)
     obj("mtl-empty", b"mtllib scene.mtl\n" + use, scene__mtl=b"")
     obj("mtl-binary", b"mtllib scene.mtl\n" + use, scene__mtl=bytes(range(256)) * 20)
     obj("mtl-other-name", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl b\nKd 1 1 1\n")
@@ -403,6 +419,11 @@ def ply_files():
                      (b"end_header", b"end_haeder"), (b"element face", b"element vertex")):
         case("%s-%s" % (old.strip().decode().replace(" ", "_"), new.strip().decode().replace(" ", "_").replace("/", "-")),
              text.replace(old, new, 1), "ply", image__png=good.png())
+    case("many-elements", b"ply\nformat ascii 1.0\n" + b"".join(b"element e%d 0\n" % i for i in range(60000)) + b"end_header\n", "ply")
+    case("long-fan", b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         b"property float z\nelement face 1\nproperty list uint uchar vertex_indices\nend_header\n" + b"\0" * 36 +
+         struct.pack("<I", 6000000) + b"\0\1\2" * 2000000, "ply")
+    case("unknown-header-line", text.replace(b"element vertex", b"made by nobody\nelement vertex", 1), "ply", image__png=good.png())
     case("property-before-element", b"ply\nformat ascii 1.0\nproperty float x\nend_header\n", "ply")
     case("no-format", b"ply\nelement vertex 0\nproperty float x\nend_header\n", "ply")
     case("no-properties", b"ply\nformat ascii 1.0\nelement vertex 1000000000000\nend_header\n", "ply")

@@ -276,7 +276,8 @@ TEST_F(Images, DecodingSpreadsToRgbaAsStored) {
     saveImage(folder_ / "a.png", makeImage(5, 3, {"R", "G", "B"}));
     const std::string file = bytesOf(folder_ / "a.png");
     DecodedImage decoded;
-    ASSERT_EQ(decodeImage(std::as_bytes(std::span(file)), decoded), "");
+    ImageBudget budget;
+    ASSERT_EQ(decodeImage(std::as_bytes(std::span(file)), budget, decoded), "");
     const auto& texels = std::get<std::vector<std::uint8_t>>(decoded.texels);
     ASSERT_EQ(texels.size(), 5u * 3 * 4);
     const ImageF loaded = loadImage(folder_ / "a.png");
@@ -286,8 +287,39 @@ TEST_F(Images, DecodingSpreadsToRgbaAsStored) {
         }
         EXPECT_EQ(texels[i * 4 + 3], 255);
     }
-    EXPECT_NE(decodeImage(std::as_bytes(std::span(file.data(), file.size() / 2)), decoded), "");
-    EXPECT_NE(decodeImage({}, decoded), "");
+    EXPECT_NE(decodeImage(std::as_bytes(std::span(file.data(), file.size() / 2)), budget, decoded), "");
+    EXPECT_NE(decodeImage({}, budget, decoded), "");
+}
+
+TEST_F(Images, LargeImagesOfOneColorAreOneTexel) {
+    ImageF image = makeImage(1000, 1000, {"R", "G", "B"});
+    std::fill(image.data.begin(), image.data.end(), 0.5f);
+    saveImage(folder_ / "plain.png", image);
+    image.at(999, 999, 0) = 0.25f;
+    saveImage(folder_ / "spot.png", image);
+    ImageBudget budget;
+    DecodedImage plain, spot;
+    const std::string plainFile = bytesOf(folder_ / "plain.png"), spotFile = bytesOf(folder_ / "spot.png");
+    ASSERT_EQ(decodeImage(std::as_bytes(std::span(plainFile)), budget, plain), "");
+    ASSERT_EQ(decodeImage(std::as_bytes(std::span(spotFile)), budget, spot), "");
+    EXPECT_EQ(plain.width * plain.height, 1u);
+    ASSERT_EQ(spot.width * spot.height, 1000000u);
+    const auto &one = std::get<std::vector<std::uint8_t>>(plain.texels),
+               &all = std::get<std::vector<std::uint8_t>>(spot.texels);
+    ASSERT_EQ(one.size(), 4u);
+    const std::vector<std::uint8_t> expected(one);
+    EXPECT_NE(all[3999996], expected[0]);
+    for (std::size_t i = 0; i < 3999996; ++i) ASSERT_EQ(all[i], expected[i % 4]) << i;
+}
+
+TEST(ImageBudget, ImagesOutOfProportionShareAnAllowance) {
+    constexpr std::uint64_t mebibyte = 1 << 20;
+    ImageBudget budget;
+    EXPECT_TRUE(budget.take(1000 * mebibyte, 10 * mebibyte));  // a file of its size
+    EXPECT_TRUE(budget.take(60 * mebibyte, 1000));
+    EXPECT_TRUE(budget.take(50 * mebibyte, 1000));
+    EXPECT_FALSE(budget.take(50 * mebibyte, 1000));
+    EXPECT_FALSE(budget.take(std::uint64_t(1) << 40, 1000));
 }
 
 TEST_F(Images, DoNotReplaceWhatIsNoRegularFile) {

@@ -200,6 +200,8 @@ private:
 }  // namespace
 
 Json readJson(const std::string& file, std::string_view text) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        throw InputError(file, "byte 0", "is text in UTF-16", "save it as UTF-8");
     checkNesting(file, text);
     DocumentBuilder builder(file, text);
     json::sax_parse(text.begin(), text.end(), &builder);

@@ -8,6 +8,12 @@ std::size_t cutAfterLine(std::string_view text) {
         const std::size_t last = text[end - 1] == '\r' && end > 1 ? end - 2 : end - 1;
         if (text[last] != '\\') return end + 1;
     }
+    if (text.find('\n') != std::string_view::npos || text.size() < 2) return 0;
+    // Lines ended by CR alone. The last byte may be half of a CR LF.
+    for (std::size_t end = text.rfind('\r', text.size() - 2); end != std::string_view::npos && end > 0;
+         end = text.rfind('\r', end - 1)) {
+        if (text[end - 1] != '\\') return end + 1;
+    }
     return 0;
 }
 

@@ -62,7 +62,7 @@ private:
     }
 
     void parse(const std::string& file, std::string_view text) {
-        Lines lines(text);
+        Lines lines(withoutMark(text));
         std::string_view line;
         MtlBlock block;
         bool isWanted = false;

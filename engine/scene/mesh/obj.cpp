@@ -4,6 +4,7 @@
 #include "engine/scene/mesh/mtl.hpp"
 #include "engine/scene/mesh/obj_chunk.hpp"
 #include "engine/scene/mesh/polygon.hpp"
+#include "engine/scene/mesh/text.hpp"
 #include "engine/scene/mesh/vertex_map.hpp"
 #include "engine/scene/notes.hpp"
 
@@ -17,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <set>
 
 namespace helio {
 namespace mesh {
@@ -24,6 +26,9 @@ namespace {
 
 /** A material takes some 2 KiB, and a file could name one every 17 bytes. */
 constexpr std::size_t maximumMaterials = 1 << 16;
+
+/** Each is looked for in the folder. */
+constexpr std::size_t maximumLibraries = 4096;
 
 /** What a chunk's triangles are of: from one triangle on, one material. */
 struct Run {
@@ -56,8 +61,11 @@ public:
         if (chunk.fault) refuse(chunk.fault->line, chunk.fault->fault, chunk.fault->remedy);
         resolve(chunk);
         for (std::string& library : chunk.libraries) {
-            if (std::find(libraries_.begin(), libraries_.end(), library) == libraries_.end())
-                libraries_.push_back(std::move(library));
+            if (!knownLibraries_.insert(library).second) continue;
+            if (libraries_.size() == maximumLibraries)
+                throw InputError(file_, "mtllib",
+                                 fmt::format("more than {} files are named", maximumLibraries), "name fewer");
+            libraries_.push_back(std::move(library));
         }
         PlacedChunk placed;
         placed.firstTriangle = triangles_;
@@ -323,6 +331,7 @@ private:
     std::array<ObjChunk::Extreme, attributeCount> highest_{};
     bool hasColors_ = false, hasNormals_ = false;
     std::vector<std::string> libraries_;
+    std::set<std::string> knownLibraries_;
     std::string currentMaterial_;
     std::map<std::string, std::size_t> materials_;  ///< into usedNames_
     std::vector<std::string> usedNames_;
@@ -334,6 +343,10 @@ private:
 }  // namespace mesh
 
 Scene loadObj(const ByteSource& source, const std::string& file, LoadMonitor& monitor) {
+    std::array<char, 2> start{};
+    source.read(0, std::as_writable_bytes(std::span(start)).first(std::min<std::size_t>(2, source.size())));
+    if (mesh::isUtf16({start.data(), start.size()}))
+        throw InputError(file, "byte 0", "is text in UTF-16", "save it as UTF-8");
     mesh::ObjBuilder builder(file, monitor);
     mesh::forEachBlock(source, mesh::cutAfterLine, monitor, mesh::parseObjChunk,
                        [&](mesh::ObjChunk chunk) { builder.add(std::move(chunk)); });

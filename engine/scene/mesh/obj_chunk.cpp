@@ -14,7 +14,7 @@ constexpr std::int64_t maximumIndex = std::numeric_limits<std::int32_t>::max();
 
 class ChunkParser {
 public:
-    explicit ChunkParser(std::string_view text) : lines_(text) {}
+    explicit ChunkParser(std::string_view text) : lines_(withoutMark(text)) {}
 
     ObjChunk parse() {
         std::string_view line;

@@ -60,6 +60,7 @@ public:
           scene_(sceneOf(file)) {}
 
     Scene read() {
+        for (const std::string& line : header_.unknown) warn(scene_, line);
         for (const PlyElement& element : header_.elements) {
             checkCount(element);
             if (element.name == "vertex") {
@@ -186,7 +187,7 @@ private:
                 helio::skip(scene_, "PLY " + element.name + " property " + property.name,
                             "it has no meaning here");
         }
-        std::vector<std::int64_t> corners;
+        std::vector<std::int32_t> corners;
         elementName_ = &element.name;
         for (std::uint64_t i = 0; i < element.count; ++i) {
             report(i);
@@ -198,7 +199,13 @@ private:
                     continue;
                 }
                 corners.clear();
-                for (std::uint64_t left = listSize(property); left > 0; --left)
+                const std::uint64_t size = listSize(property);
+                constexpr std::uint64_t large = 1 << 16;  // else they double, and double the memory
+                if (size > large) {
+                    corners.reserve(std::size_t(size));
+                    primitive_.indices.reserve(primitive_.indices.size() + std::size_t(size) * 3);
+                }
+                for (std::uint64_t left = size; left > 0; --left)
                     corners.push_back(index(values_.next(property.type), isStrips));
                 if (isStrips) {
                     addStrips(corners);
@@ -210,11 +217,11 @@ private:
     }
 
     /** Held against the vertices once these are known. */
-    std::int64_t index(double value, bool isStrips) {
+    std::int32_t index(double value, bool isStrips) {
         if (isStrips && value == -1) return -1;
         if (!(value >= 0) || value != std::floor(value) || value > std::numeric_limits<std::int32_t>::max())
             values_.refuse(fmt::format("{} is no index of a vertex", value), "count from 0");
-        const auto result = std::int64_t(value);
+        const auto result = std::int32_t(value);
         if (result > highest_) {
             highest_ = result;
             highestPlace_ = index_;
@@ -222,7 +229,8 @@ private:
         }
         return result;
     }
-    void addFace(const std::vector<std::int64_t>& corners) {
+
+    void addFace(const std::vector<std::int32_t>& corners) {
         if (corners.size() < 3)
             values_.refuse(fmt::format("a face has {} corners", corners.size()), "give at least 3");
         if (corners.size() > 3)
@@ -231,7 +239,7 @@ private:
     }
 
     /** -1 begins anew; every second triangle is turned around. */
-    void addStrips(const std::vector<std::int64_t>& corners) {
+    void addStrips(const std::vector<std::int32_t>& corners) {
         std::size_t first = 0;
         for (std::size_t k = 0; k < corners.size(); ++k) {
             if (corners[k] < 0) {
@@ -243,8 +251,8 @@ private:
         }
     }
 
-    void add(std::int64_t a, std::int64_t b, std::int64_t c) {
-        for (const std::int64_t corner : {a, b, c}) primitive_.indices.push_back(std::uint32_t(corner));
+    void add(std::int32_t a, std::int32_t b, std::int32_t c) {
+        for (const std::int32_t corner : {a, b, c}) primitive_.indices.push_back(std::uint32_t(corner));
     }
 
     void finish() {

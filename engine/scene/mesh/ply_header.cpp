@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 
 namespace helio::mesh {
 namespace {
@@ -62,7 +63,10 @@ public:
             } else if (keyword == "comment" || keyword == "obj_info") {
                 if (takeWord(line) == "TextureFile") header_.texture = trimmed(line);
             } else if (!keyword.empty()) {
-                refuse(fmt::format("{} is no part of a header", shown(keyword)), "write the file again");
+                header_.unknown.push_back(
+                    fmt::format("line {}: {} is no part of a header; left out", line_, shown(keyword)));
+                if (header_.unknown.size() > 100)
+                    refuse("the header has more than 100 lines that say nothing", "write the file again");
             }
         }
         if (!hasFormat) refuse("the header names no format", "give a line such as: format ascii 1.0");
@@ -78,7 +82,12 @@ private:
     }
 
     std::string_view takeLine() {
-        const std::size_t end = rest_.find('\n');
+        if (line_ == 0) {  // what ends the first line ends all
+            const std::size_t end = rest_.find_first_of("\r\n");
+            if (end != std::string_view::npos && rest_[end] == '\r' && !rest_.substr(end).starts_with("\r\n"))
+                lineEnd_ = '\r';
+        }
+        const std::size_t end = rest_.find(lineEnd_);
         if (end == std::string_view::npos) {
             ++line_;
             if (line_ == 1) refuse("is no PLY file", "begin with a line that says ply");
@@ -113,9 +122,8 @@ private:
         const std::optional<std::int64_t> count = parseInteger(takeWord(line));
         if (element.name.empty() || !count || *count < 0)
             refuse("an element has no name or no count", "give: element NAME COUNT");
-        const bool isTwice = std::any_of(header_.elements.begin(), header_.elements.end(),
-                                         [&](const PlyElement& other) { return other.name == element.name; });
-        if (isTwice) refuse(fmt::format("element {} is there twice", shown(element.name)), "give it once");
+        if (!names_.insert(element.name).second)
+            refuse(fmt::format("element {} is there twice", shown(element.name)), "give it once");
         element.count = std::uint64_t(*count);
         header_.elements.push_back(std::move(element));
     }
@@ -143,8 +151,10 @@ private:
     std::string_view rest_;
     const std::string& file_;
     PlyHeader header_;
+    char lineEnd_ = '\n';
     std::size_t line_ = 0;
     std::uint64_t used_ = 0;
+    std::set<std::string> names_;
 };
 
 }  // namespace

@@ -29,8 +29,9 @@ struct PlyHeader {
     enum class Format : std::uint8_t { Ascii, LittleEndian, BigEndian };
     Format format = Format::Ascii;
     std::vector<PlyElement> elements;
-    std::string texture;     ///< what a comment TextureFile names
-    std::uint64_t size = 0;  ///< bytes; the elements follow
+    std::string texture;               ///< what a comment TextureFile names
+    std::vector<std::string> unknown;  ///< a warning for each line that is no part of a header
+    std::uint64_t size = 0;            ///< bytes; the elements follow
     std::size_t lines = 0;
 };
 

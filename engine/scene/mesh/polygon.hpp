@@ -36,6 +36,10 @@ bool cutFans(std::span<const glm::vec3> positions, std::span<const Fan> fans,
     std::vector<std::uint32_t> cut;
     std::vector<Index> corners;
     for (const Fan& fan : fans) {
+        if (fan.corners > maximumEarClipping) {
+            hasLarge = true;
+            continue;
+        }
         // The polygon's corner k: 0 and 1 are those of the first triangle, each other one ends a triangle.
         const auto place = [&fan](std::size_t k) {
             return std::size_t(fan.triangle) * 3 + (k < 2 ? k : (k - 2) * 3 + 2);
@@ -44,10 +48,7 @@ bool cutFans(std::span<const glm::vec3> positions, std::span<const Fan> fans,
         for (std::size_t k = 0; k < fan.corners; ++k)
             polygon.push_back(positions[std::size_t((**lists.begin())[place(k)])]);
         cut.clear();
-        if (!triangulate(polygon, cut)) {
-            hasLarge = hasLarge || fan.corners > maximumEarClipping;
-            continue;
-        }
+        if (!triangulate(polygon, cut)) continue;
         for (std::vector<Index>* const list : lists) {
             if (list->empty()) continue;
             corners.clear();

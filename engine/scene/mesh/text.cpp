@@ -1,5 +1,6 @@
 #include "engine/scene/mesh/text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -18,10 +19,11 @@ std::string_view withoutPlus(std::string_view word) {
 }  // namespace
 
 std::string_view Lines::physicalLine() {
-    const std::size_t feed = rest_.find('\n');
-    std::string_view line = rest_.substr(0, feed);
-    std::size_t used = feed == std::string_view::npos ? rest_.size() : feed + 1;
+    if (feed_ < rest_.data())  // kept: a text may have a million CR before its next LF
+        feed_ = rest_.data() + std::min(rest_.find('\n'), rest_.size());
+    std::string_view line = rest_.substr(0, std::size_t(feed_ - rest_.data()));
     const std::size_t carriage = line.find('\r');
+    std::size_t used = std::min(line.size() + 1, rest_.size());
     if (carriage != std::string_view::npos) {
         if (carriage + 1 < line.size()) used = carriage + 1;  // it ends a line by itself
         line = line.substr(0, carriage);
@@ -55,6 +57,16 @@ std::string_view takeWord(std::string_view& line) {
     const std::string_view word = line.substr(begin, end - begin);
     line.remove_prefix(end);
     return word;
+}
+
+std::string_view withoutMark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    if (text.starts_with(mark)) text.remove_prefix(mark.size());
+    return text;
+}
+
+bool isUtf16(std::string_view text) {
+    return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
 }
 
 std::string_view trimmed(std::string_view text) {

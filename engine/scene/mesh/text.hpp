@@ -30,12 +30,17 @@ private:
     std::string_view physicalLine();
 
     std::string_view rest_;
+    const char* feed_ = nullptr;  ///< the next LF, or the end
     std::string joined_;
     std::size_t number_ = 0, passed_ = 0;
 };
 
 /** Takes the next word off a line; empty at its end. Words are parted by spaces and tabs. */
 std::string_view takeWord(std::string_view& line);
+/** Without the byte order mark that some editors put first in UTF-8. */
+std::string_view withoutMark(std::string_view text);
+/** Whether a text begins with UTF-16's byte order mark. */
+bool isUtf16(std::string_view text);
 /** Without spaces and tabs at both ends. */
 std::string_view trimmed(std::string_view text);
 /** A finite number that single precision can hold; what is too small for it is 0. */
