@@ -16,7 +16,7 @@ namespace helio {
 namespace {
 
 /** The first bytes of every checkpoint, with the format's version. */
-constexpr std::string_view magic = "heliograph checkpoint 1\n";
+constexpr std::string_view magic = "heliograph checkpoint 2\n";
 
 /** FNV-1a over 8-byte words. */
 std::uint64_t checksum(const std::byte* data, std::size_t size) {
@@ -102,7 +102,8 @@ private:
 
 void saveCheckpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
     std::vector<std::byte> bytes;
-    bytes.reserve(4096 + (checkpoint.film.size() + checkpoint.state.size()) * sizeof(float));
+    bytes.reserve(4096 + (checkpoint.shares.size() + checkpoint.film.size() + checkpoint.state.size()) *
+                             sizeof(float));
     Writer out(bytes);
     out.raw(magic.data(), magic.size());
     out.value(std::uint64_t(checkpoint.settings.size()));
@@ -115,6 +116,7 @@ void saveCheckpoint(const std::filesystem::path& file, const Checkpoint& checkpo
     out.value(checkpoint.seconds);
     out.value(checkpoint.cpuSeconds);
     out.value(checkpoint.counters);
+    out.floats(checkpoint.shares);
     out.floats(checkpoint.film);
     out.floats(checkpoint.state);
     out.value(checksum(bytes.data(), bytes.size()));
@@ -154,6 +156,7 @@ Checkpoint loadCheckpoint(const std::filesystem::path& file,
     checkpoint.seconds = in.value<double>();
     checkpoint.cpuSeconds = in.value<double>();
     checkpoint.counters = in.value<std::array<std::uint64_t, 5>>();
+    checkpoint.shares = in.floats();
     checkpoint.film = in.floats();
     checkpoint.state = in.floats();
     if (in.failed()) refuse("is damaged", "render again without --resume");

@@ -19,6 +19,7 @@ struct Checkpoint {
     std::uint32_t end = 0;                    ///< of the batch that was under way
     double seconds = 0, cpuSeconds = 0;       ///< of rendering so far
     std::array<std::uint64_t, 5> counters{};  ///< camera, bounce and shadow rays, cut paths, rays given up
+    std::vector<float> shares;                ///< of adaptive sampling, by pixel; empty before there are any
     std::vector<float> film, state;           ///< texels of the film's and the tracer's images
 };
 

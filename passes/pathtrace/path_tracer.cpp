@@ -122,6 +122,13 @@ struct PathTracer::Impl {
             buffers.insert(buffers.end(), {"uLightSlots", "uLightCells", "uLightRanges", "uLightOfTriangle"});
             spec.merge(scene_.lightTableConstants());
         }
+        std::vector<Binding> ends;
+        if (options_.adaptive) {
+            defines["ADAPTIVE"] = "1";
+            const std::vector<std::uint32_t> none(std::size_t(options_.size[0]) * options_.size[1], 0);
+            sampleEnds_.emplace(makeBuffer(device_, "pathtrace.sampleEnds", none));
+            ends.push_back({"uSampleEnds", graph.import(*sampleEnds_), Format::R32UI});
+        }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         const bool usesStrata =
@@ -137,6 +144,7 @@ struct PathTracer::Impl {
             .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, buffers))
             .reads(cameraBinding(graph))
+            .reads(ends)
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
             .record([this](Commands& commands) {
                 const auto groups = groupsFor(options_.size);
@@ -218,6 +226,7 @@ struct PathTracer::Impl {
     std::map<std::string, std::string> materialDefines_;
     DeviceImage state_;
     DeviceBuffer counters_;
+    std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
     TraceParameters parameters_{};
     Plan plan_;
     Readback<DeviceCounters> counted_;
@@ -250,6 +259,11 @@ bool PathTracer::advance(std::uint32_t sampleEnd) {
 void PathTracer::restart(std::uint32_t seed) {
     impl_->options_.seed = seed;
     impl_->begun_ = false;
+}
+
+void PathTracer::setSampleEnds(const std::vector<std::uint32_t>& ends) {
+    assert(impl_->sampleEnds_ && ends.size() * 4 == impl_->sampleEnds_->bytes());
+    impl_->sampleEnds_->upload(ends.data(), ends.size() * 4);
 }
 
 void PathTracer::setTurnBudget(std::uint32_t turns) {

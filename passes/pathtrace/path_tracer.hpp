@@ -43,6 +43,7 @@ struct PathTraceOptions {
     PixelFilter filter = PixelFilter::Box;
     LightChoice lights = LightChoice::Adaptive;
     std::uint32_t seed = 0;
+    bool adaptive = false;  ///< each pixel has its own number of samples, see setSampleEnds()
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */
     std::uint32_t turnBudget = 30000;
@@ -85,6 +86,9 @@ public:
 
     /** Begins anew with another seed, into a film that the caller has cleared; counters go on. */
     void restart(std::uint32_t seed);
+    /** With PathTraceOptions::adaptive, before a batch: what takes the place of sampleEnd in advance(), pixel
+     * by pixel from the upper left, under the same conditions. */
+    void setSampleEnds(const std::vector<std::uint32_t>& ends);
     /** Loop turns of the next dispatches, see PathTraceOptions::turnBudget: how long one takes. */
     void setTurnBudget(std::uint32_t turns);
 

@@ -36,6 +36,10 @@ layout(push_constant) uniform Parameters {
 /** A pixel's state between dispatches: 4 x 2 texels. */
 layout(set = 0, binding = 0, rgba32f) uniform image2D uState;
 
+#ifdef ADAPTIVE
+layout(set = 0, binding = 45) uniform usamplerBuffer uSampleEnds;  ///< R32UI: each pixel's own sampleEnd
+#endif
+
 /** Counters of all dispatches; 64 bits as two words, lower first. */
 layout(set = 0, binding = 2, std430) buffer Counters {
     uint open;        ///< pixels that have not reached sampleEnd, of this dispatch
@@ -106,10 +110,15 @@ void main() {
         batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w - 4096.0 * countB, countB, s6.w, true);
     }
 
+#ifdef ADAPTIVE
+    const uint sampleEnd = inside ? texelFetch(uSampleEnds, int(pixel.y * parameters.size.x + pixel.x)).x : 0u;
+#else
+    const uint sampleEnd = parameters.sampleEnd;
+#endif
     uint cameraRays = 0u, bounceRays = 0u, shadowRays = 0u, cutPaths = 0u, abandonedRays = 0u;
-    cameraRays += inside && !resumed && sampleIndex < parameters.sampleEnd ? 1u : 0u;
+    cameraRays += inside && !resumed && sampleIndex < sampleEnd ? 1u : 0u;
     uint spent = 0u;
-    while (inside && path.sampleIndex < parameters.sampleEnd && spent < parameters.budget) {
+    while (inside && path.sampleIndex < sampleEnd && spent < parameters.budget) {
         float distance;
         int slot;
         const int closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
@@ -132,7 +141,7 @@ void main() {
             const uint next = path.sampleIndex + 1u;
             numbers = startSample(SAMPLER_KIND, pixelIndex, next, parameters.seed, SAMPLER_STRATA);
             path = startPath(numbers, pixel, next);
-            cameraRays += next < parameters.sampleEnd ? 1u : 0u;
+            cameraRays += next < sampleEnd ? 1u : 0u;
         }
         spent += 1u + LOOP_TURNS;
         if (COUNT_TURNS) {
@@ -141,7 +150,7 @@ void main() {
         }
     }
 
-    const bool finished = path.sampleIndex >= parameters.sampleEnd;
+    const bool finished = path.sampleIndex >= sampleEnd;
     if (inside) {
         if (finished) {
             storeFilm(filmPixel, mergeFilmBatch(stored, batch));

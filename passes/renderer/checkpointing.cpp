@@ -33,6 +33,7 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"pixel filter", std::to_string(int(options.filter))},
             {"integrator", std::to_string(int(options.integrator))},
             {"sampler", std::to_string(int(options.sampler))},
+            {"adaptive sampling", options.adaptive ? "on" : "off"},
             {"accelerator", std::to_string(int(options.accelerator))},
             {"choice of lights", std::to_string(int(options.lights))},
             {"next-event estimation", options.nextEventEstimation ? "on" : "off"},
@@ -59,6 +60,7 @@ std::optional<Checkpoint> Checkpointing::resume() {
     }
     Checkpoint checkpoint = loadCheckpoint(job_.options.checkpoint, settings_);
     restore(checkpoint);
+    shares_ = checkpoint.shares;
     checkpoint.film = {};
     checkpoint.state = {};
     job_.goOnAfter(checkpoint.seconds, checkpoint.cpuSeconds);
@@ -68,7 +70,8 @@ std::optional<Checkpoint> Checkpointing::resume() {
 
 void Checkpointing::restore(const Checkpoint& checkpoint) {
     const std::uint64_t pixels = std::uint64_t(film_.width()) * film_.height();
-    if (checkpoint.film.size() != pixels * 24 || checkpoint.state.size() != pixels * 32)
+    if (checkpoint.film.size() != pixels * 24 || checkpoint.state.size() != pixels * 32 ||
+        (!checkpoint.shares.empty() && checkpoint.shares.size() != pixels))
         throw InputError(job_.options.checkpoint.string(), "", "is damaged", "render again without --resume");
     DeviceBuffer film = makeBuffer(device_, "checkpoint.film", checkpoint.film);
     DeviceBuffer state = makeBuffer(device_, "checkpoint.state", checkpoint.state);
@@ -100,6 +103,7 @@ void Checkpointing::save(std::uint32_t reached, std::uint32_t end) {
     const PathCounters c = tracer_.counters();
     Checkpoint checkpoint;
     checkpoint.settings = settings_;
+    checkpoint.shares = shares_;
     checkpoint.reached = reached;
     checkpoint.end = end;
     checkpoint.seconds = job_.seconds();

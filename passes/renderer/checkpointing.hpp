@@ -30,6 +30,8 @@ public:
     /** Saves if the last save is long enough ago. `reached`: samples in the film; `end`: of the batch under
      * way. */
     void saveWhenDue(std::uint32_t reached, std::uint32_t end);
+    /** What adaptive sampling's pilot has found, to be saved too. */
+    void setShares(const std::vector<float>& shares) { shares_ = shares; }
     /** Saves. */
     void save(std::uint32_t reached, std::uint32_t end);
 
@@ -43,6 +45,7 @@ private:
     std::vector<std::pair<std::string, std::string>> settings_;
     Plan reading_;
     Readback<float> readFilm_, readState_;
+    std::vector<float> shares_;
     double saved_ = 0, took_ = 0;  ///< seconds of rendering at the last save, and of that save
 };
 

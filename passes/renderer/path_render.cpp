@@ -1,5 +1,6 @@
 #include "passes/renderer/path_render.hpp"
 
+#include "engine/film/sample_allocation.hpp"
 #include "engine/film/variance.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
@@ -10,7 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <thread>
+#include <vector>
 
 namespace helio {
 namespace {
@@ -26,7 +29,8 @@ public:
           job_(job),
           cpuDevice_(cpuDevice),
           schedule_(job.options),
-          budget_(job.options) {}
+          budget_(job.options),
+          pilot_(pilotSamples(job.options.samples)) {}
 
     /** Samples per pixel that the film holds at the end. */
     std::uint32_t run() {
@@ -36,15 +40,17 @@ public:
             underWay = checkpoint->end;
             // What comes next goes by the error at the last end.
             if (reached >= underWay && reached > 0 && judged(reached)) return reached;
+            if (!checkpoint->shares.empty()) allocation_.emplace(checkpoint->shares, pilot_);
         }
         for (;;) {
-            std::uint32_t end = underWay > reached ? underWay : schedule_.next(reached, job_.seconds());
+            std::uint32_t end = underWay > reached ? underWay : nextEnd(reached);
             if (end != reached && !trace(end, reached)) {
                 checkpoints_.save(reached, end);
                 return reached;
             }
             if (end != reached) {
                 reached = end;
+                allocate(reached);
                 if (!judged(reached)) continue;
             }
             checkpoints_.save(reached, reached);
@@ -53,12 +59,30 @@ public:
     }
 
 private:
+    std::uint32_t nextEnd(std::uint32_t reached) const {
+        const std::uint32_t end = schedule_.next(reached, job_.seconds());
+        return job_.options.adaptive && reached < pilot_ ? std::min(end, pilot_) : end;
+    }
+
+    /** Once the pilot is done, chooses where the other samples go. */
+    void allocate(std::uint32_t reached) {
+        if (!job_.options.adaptive || allocation_ || reached < pilot_ || reached >= job_.options.samples)
+            return;
+        allocation_.emplace(target_.resolve(), pilot_);
+        checkpoints_.setShares(allocation_->shares());
+    }
+
     bool timeIsOver() const {
         return job_.options.maxSeconds > 0 && job_.seconds() >= job_.options.maxSeconds;
     }
 
     /** Traces to the end of a batch; false where the application cancels or the time is over before. */
     bool trace(std::uint32_t end, std::uint32_t reached) {
+        if (job_.options.adaptive) {
+            const std::size_t pixels = std::size_t(job_.options.size[0]) * job_.options.size[1];
+            tracer_.setSampleEnds(allocation_ ? allocation_->samples(end)
+                                              : std::vector<std::uint32_t>(pixels, end));
+        }
         for (bool done = false; !done;) {
             tracer_.setTurnBudget(budget_.turns());
             const Stopwatch watch;
@@ -128,6 +152,8 @@ private:
     bool cpuDevice_;
     SampleSchedule schedule_;
     TurnBudget budget_;
+    std::uint32_t pilot_;
+    std::optional<SampleAllocation> allocation_;  ///< of adaptive sampling, after the pilot
     double relmse_ = -1, estimateSeconds_ = 0;
 };
 
@@ -211,6 +237,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
     result.lights = options.lights;
     result.filter = options.filter;
     result.seed = options.seed;
+    result.adaptive = options.adaptive;
     return result;
 }
 

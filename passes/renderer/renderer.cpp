@@ -55,6 +55,15 @@ void check(const RenderOptions& options) {
            fmt::format("{}", shadows.lightSize), "give a size that is not negative");
     refuse(options.pipeline == Pipeline::Raster && options.integrator != Integrator::Path, "integrator",
            "the raster pipeline traces no paths", "leave it out");
+    refuse(options.adaptive && options.pipeline == Pipeline::Raster, "adaptive",
+           "the raster pipeline takes equal samples", "leave it out");
+    refuse(options.adaptive && options.sampler == SamplerKind::SobolBlue, "adaptive",
+           "this sampler correlates neighbours, and a pixel's number of samples would depend on its own",
+           "choose another sampler");
+    refuse(options.adaptive && options.samples >= (1u << 20), "adaptive",
+           fmt::format("{} samples per pixel, of which some pixels would take 16 times as many",
+                       options.samples),
+           "give at most 1048575");
     refuse(options.resume && options.checkpoint.empty(), "resume", "there is no checkpoint to resume from",
            "name the file as checkpoint");
     refuse(options.pipeline == Pipeline::Raster && !options.checkpoint.empty(), "checkpoint",

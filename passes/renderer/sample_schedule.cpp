@@ -9,13 +9,14 @@ namespace {
 
 constexpr std::uint64_t firstBatchPaths = 1u << 22;    // about a second where tracing is quick
 constexpr std::uint32_t longestBatch = 1024;           // samples per pixel; the film takes 4096
+constexpr std::uint32_t longestAdaptiveBatch = 256;    // on average, a pixel's is up to 16 times as long
 constexpr double fewestTurns = 64, mostTurns = 30000;  // of PathTracer
 
 }  // namespace
 
 SampleSchedule::SampleSchedule(const RenderOptions& options)
     : samples_(options.samples),
-      limit_(longestBatch),
+      limit_(options.adaptive ? longestAdaptiveBatch : longestBatch),
       growth_(4),
       maxSeconds_(options.maxSeconds),
       maxError_(options.maxError) {

@@ -10,11 +10,11 @@ namespace helio {
 /** Textures in use that name a set of texture coordinates which their primitive does not have. */
 void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings);
 
-/** A scene, or an eye, beyond the range in which every product of coordinates that the pipelines form stays in
- * that of normal floats. The largest are of three lengths (the distance along a ray,
+/** A scene, or an eye, beyond the range in which every product of coordinates that the pipelines form stays
+ * in that of normal floats. The largest are of three lengths (the distance along a ray,
  * shaders/intersection/triangle.glsl): with coordinates to x a sheared corner is at most 4 x from the ray, so
- * that the sum stays below 3 * 2 (4 x)^2 * 2 x, finite to x = 1.2e12. The smallest are of two edges of a triangle
- * and one distance, normal down to edges of 3e-15 in a scene of 1e-9. The limits stay inside. */
+ * that the sum stays below 3 * 2 (4 x)^2 * 2 x, finite to x = 1.2e12. The smallest are of two edges of a
+ * triangle and one distance, normal down to edges of 3e-15 in a scene of 1e-9. The limits stay inside. */
 inline constexpr double kLargestCoordinate = 1e11, kSmallestExtent = 1e-9;
 void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vector<std::string>& warnings);
 

@@ -135,6 +135,9 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
             throw CLI::ValidationError("--aa",
                                        "is there for --pipeline raster only; paths have --spp and --filter");
         }
+        if (options.adaptive && options.sampler == SamplerKind::SobolBlue) {
+            throw CLI::ValidationError("--adaptive", "needs a sampler that does not correlate neighbours");
+        }
         const bool isLocal = options.integrator == Integrator::AmbientOcclusion ||
                              options.integrator == Integrator::Hemisphere;
         if (isLocal && command.count("--lights") > 0) {
@@ -159,8 +162,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
-         {"--time", "--max-error", "--max-depth", "--filter", "--sampler", "--integrator", "--lights",
-          "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
+         {"--time", "--max-error", "--adaptive", "--max-depth", "--filter", "--sampler", "--integrator",
+          "--lights", "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -334,6 +337,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
     command->add_option("--spp", options.samples, "Samples per pixel")
         ->check(CLI::Range(1u, (1u << 24) - 1))
         ->capture_default_str();
+    command->add_flag("--adaptive", options.adaptive,
+                      "Take more of the samples where the error is large; the image stays unbiased");
     command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")
         ->check(CLI::PositiveNumber);
     command

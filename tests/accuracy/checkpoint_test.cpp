@@ -80,6 +80,28 @@ TEST(Checkpoint, ACancelledRenderGoesOn) {
     fs::remove(o.checkpoint);
 }
 
+TEST(Checkpoint, AnAdaptiveRenderWithAnErrorLimitGoesOn) {
+    const Scene scene = load("sample:cornell");
+    RenderOptions o = options();
+    o.size = {40, 30};
+    o.samples = 900;
+    o.adaptive = true;
+    o.maxError = 1e-4;
+    const RenderResult whole = renderer().render(scene, o);
+    o.checkpoint = fileFor("adaptive");
+    o.resume = true;
+    for (int calls = 2;; ++calls) {
+        ASSERT_LT(calls, 60);
+        int left = calls;
+        o.progress = [&](const Progress& p) { return p.stage != "render" || --left > 0; };
+        const RenderResult result = renderer().render(scene, o);
+        if (result.cancelled) continue;
+        expectSame(result, whole);
+        break;
+    }
+    fs::remove(o.checkpoint);
+}
+
 /** Not a test of its own: the process that KilledAtAnyMoment kills. */
 TEST(Checkpoint, DISABLED_Child) {
     const char* file = std::getenv("HELIOGRAPH_TEST_CHECKPOINT");

@@ -4,9 +4,11 @@
 #include "tests/support/scene_films.hpp"
 
 #include <heliograph/renderer.hpp>
+#include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,61 @@ TEST(ErrorLimit, EndsWithin20PercentOfTheLeastSamplesThatSuffice) {
         }
     }
 }
+
+/** Over seeds: the picture's mean, its mean relative to the truth, and relMSE. */
+struct Runs {
+    verify::RunningStatistics brightness, relative, error;
+};
+void addRun(Runs& runs, const FilmImages& film, const std::vector<double>& truth) {
+    double brightness = 0, relative = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const double x = film.mean[i / 3 * 4 + i % 3];
+        brightness += x / double(truth.size());
+        relative += x / (truth[i] + 0.1) / double(truth.size());
+    }
+    runs.brightness.add(brightness);
+    runs.relative.add(relative);
+    runs.error.add(relativeError(film, truth));
+}
+double zOf(const verify::RunningStatistics& a, const verify::RunningStatistics& b) {
+    return (a.mean() - b.mean()) / std::hypot(a.standardError(), b.standardError());
+}
+
+class Adaptive : public testing::TestWithParam<const char*> {};
+
+TEST_P(Adaptive, IsUnbiasedAndNoWorse) {
+    constexpr int seeds = 150;
+    const Scene scene = errorScene(GetParam());
+    SceneFilms plain(device(), scene, {16, 16}), adaptive(device(), scene, {16, 16}, true);
+    const auto truthFilm = plain.render(4096, 999);
+    MeanImage mean;
+    mean.add(truthFilm);
+    const std::vector<double> truth = mean.mean();
+    Runs plainRuns, adaptiveRuns;
+    double samples = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        addRun(plainRuns, plain.render(16, std::uint32_t(seed)), truth);
+        const FilmImages film = adaptive.render(16, std::uint32_t(10000 + seed));
+        addRun(adaptiveRuns, film, truth);
+        for (std::size_t i = 3; i < film.mean.size(); i += 4) samples += film.mean[i];
+    }
+    EXPECT_NEAR(samples / (256.0 * seeds), 16, 0.16);
+    // 150 pictures each of 256 pixels and 16 samples: |z| above 3.9 in 1 of 10,000.
+    EXPECT_LT(std::abs(zOf(adaptiveRuns.brightness, plainRuns.brightness)), 3.9);
+    EXPECT_LT(std::abs(zOf(adaptiveRuns.relative, plainRuns.relative)), 3.9);
+    const double gain = adaptiveRuns.error.mean() / plainRuns.error.mean();
+    const double uncertainty = std::hypot(adaptiveRuns.error.standardError() / adaptiveRuns.error.mean(),
+                                          plainRuns.error.standardError() / plainRuns.error.mean());
+    printf("%s: z %.2f, relative %.2f; relMSE %.3f +- %.3f of plain\n", GetParam(),
+           zOf(adaptiveRuns.brightness, plainRuns.brightness), zOf(adaptiveRuns.relative, plainRuns.relative),
+           gain, uncertainty);
+    EXPECT_LT(gain, 1.05 + 3 * uncertainty);
+    if (std::string(GetParam()) == "spheres") {
+        EXPECT_LT(gain, 0.9);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Adaptive, testing::Values("cornell", "room", "spheres"));
 
 }  // namespace
 }  // namespace helio::test

@@ -4,25 +4,41 @@
 
 namespace helio::test {
 
-SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, SamplerKind sampler)
-    : scene_(std::move(scene)), target_(device, size[0], size[1]) {
+SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, bool adaptive)
+    : scene_(std::move(scene)), adaptive_(adaptive), target_(device, size[0], size[1]) {
     PathTraceOptions options;
     options.size = size;
-    options.sampler = sampler;
+    options.adaptive = adaptive;
     const PlacedCamera placed = chooseCamera(scene_, {}, double(size[0]) / size[1]);
     uploaded_ = std::make_unique<DeviceScene>(device, scene_, PathTracer::packOptions(scene_, options));
     tracer_ = std::make_unique<PathTracer>(device, *uploaded_, scene_.cameras[std::size_t(placed.camera)],
                                            placed.transform, options, target_.film());
 }
 
+void SceneFilms::trace(std::uint32_t begin, std::uint32_t end, const SampleAllocation* allocation) {
+    while (begin < end) {
+        begin = std::min(begin + 256, end);
+        if (adaptive_) {
+            const std::size_t pixels = std::size_t(target_.film().width()) * target_.film().height();
+            tracer_->setSampleEnds(allocation != nullptr ? allocation->samples(begin)
+                                                         : std::vector<std::uint32_t>(pixels, begin));
+        }
+        while (!tracer_->advance(begin)) {
+        }
+    }
+}
+
 FilmImages SceneFilms::render(std::uint32_t samples, std::uint32_t seed) {
     target_.clear();
     tracer_->restart(seed);
-    for (std::uint32_t end = 0; end < samples;) {
-        end = std::min(end + 1024, samples);
-        while (!tracer_->advance(end)) {
-        }
+    if (!adaptive_) {
+        trace(0, samples);
+        return target_.resolve();
     }
+    const std::uint32_t pilot = pilotSamples(samples);
+    trace(0, pilot);
+    const SampleAllocation allocation(target_.resolve(), pilot);
+    trace(pilot, samples, &allocation);
     return target_.resolve();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /** @file Films of one scene under many seeds, made with one set of pipelines. */
+#include "engine/film/sample_allocation.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "passes/renderer/film_target.hpp"
 
@@ -15,13 +16,15 @@ namespace helio::test {
 /** Traces a scene again and again, as the renderer would with no limit but the number of samples. */
 class SceneFilms {
 public:
-    SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size,
-               SamplerKind sampler = SamplerKind::Sobol);
-    /** A film of `samples` per pixel. */
+    SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, bool adaptive = false);
+    /** A film of `samples` per pixel; on average where adaptive. */
     FilmImages render(std::uint32_t samples, std::uint32_t seed);
 
 private:
+    void trace(std::uint32_t begin, std::uint32_t end, const SampleAllocation* allocation = nullptr);
+
     Scene scene_;
+    bool adaptive_;
     FilmTarget target_;
     std::unique_ptr<DeviceScene> uploaded_;
     std::unique_ptr<PathTracer> tracer_;

@@ -95,6 +95,11 @@ struct RenderOptions {
     Pipeline pipeline = Pipeline::Path;
     std::uint32_t samples = 64;  ///< per pixel
     double maxError = 0;         ///< stop when the upper bound of relMSE is below; 0 never
+    /** Path pipeline: more samples where the error is large, as many in all. A quarter of them, 8 to 64 per
+     * pixel, are taken everywhere first; where the others go depends on a pixel's neighbours alone, so that
+     * its mean stays unbiased. Not with SamplerKind::SobolBlue, which correlates neighbours, nor with 2^20
+     * samples or more. */
+    bool adaptive = false;
     double maxSeconds = 0;       ///< stop after so many rendering seconds; 0 never
     std::int64_t maxDepth = -1;  ///< scatterings; negative: unlimited (65,536)
     PixelFilter filter = PixelFilter::Box;
@@ -147,7 +152,8 @@ struct RenderResult {
     /** From the start of the process for its first render, else from the call, to the end of the first
      * (compiling) run of every kernel. CPU seconds are user and system time of the whole process. */
     double setupSeconds = 0, setupCpuSeconds = 0, renderCpuSeconds = 0;
-    /** Per pixel; after a cancel some pixels may have more, see the samples channel. */
+    /** Per pixel, on average where sampling is adaptive; after a cancel some pixels may have more, see the
+     * samples channel. */
     std::uint32_t samples = 0;
     RayCounts rays;
     std::uint64_t nanCount = 0, truncatedPaths = 0;

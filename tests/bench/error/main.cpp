@@ -1,5 +1,6 @@
 // Long experiments on the error estimate; see --help.
 #include "tests/bench/error/coverage.hpp"
+#include "tests/bench/error/table.hpp"
 #include "tests/support/error_scenes.hpp"
 
 #include <heliograph/device.hpp>
@@ -31,6 +32,22 @@ int coverage(const std::vector<std::string>& scenes, const helio::test::Coverage
     return 0;
 }
 
+int table(const std::vector<std::string>& scenes, const helio::test::TableOptions& options) {
+    helio::Device device;
+    fmt::print("{}x{}, mean of {} seeds\n", options.size, options.size, options.seeds);
+    fmt::print("| scene | samples | plain | adaptive / plain |\n|---|---|---|---|\n");
+    for (const std::string& scene : scenes) {
+        for (const std::uint32_t samples : {16u, 64u}) {
+            const auto row =
+                helio::test::measureRow(device, helio::test::errorScene(scene), samples, options);
+            fmt::print("| {} | {} | {:.3g} | {:.3f} |\n", scene, samples, row.plain,
+                       row.adaptive / row.plain);
+            std::fflush(stdout);
+        }
+    }
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -46,7 +63,14 @@ int main(int argc, char** argv) try {
     command->add_option("--size", options.size)->capture_default_str();
     command->add_option("--keep", options.keep, "Folder in which the films are kept");
     command->add_option("--judge", options.judge, "Folder of kept films to judge, in place of rendering");
+    helio::test::TableOptions tableOptions;
+    std::vector<std::string> tableScenes = {"cornell", "plates", "glass", "lights500", "room", "spheres"};
+    CLI::App* tableCommand = app.add_subcommand("table", "relMSE of plain and adaptive sampling");
+    tableCommand->add_option("scenes", tableScenes, "Samples, room or spheres")->capture_default_str();
+    tableCommand->add_option("--seeds", tableOptions.seeds)->capture_default_str();
+    tableCommand->add_option("--size", tableOptions.size)->capture_default_str();
     CLI11_PARSE(app, argc, argv);
+    if (tableCommand->parsed()) return table(tableScenes, tableOptions);
     return coverage(scenes, options);
 } catch (const std::exception& error) {
     fmt::print(stderr, "bench_error: {}\n", error.what());
