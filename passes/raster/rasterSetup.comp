@@ -20,6 +20,10 @@ layout(set = 0, binding = 4, std430) writeonly buffer uLarge { uint large[]; };
 layout(set = 0, binding = 6, rg32ui) uniform uimageBuffer uVisibilityTexels;  ///< the same, to read
 layout(set = 0, binding = 5, std430) writeonly buffer uClipped { uint clipped[]; };
 
+#ifdef PEEL
+layout(set = 0, binding = 7) uniform usamplerBuffer uLimit;  ///< what is not behind these keys is left out
+#endif
+
 // A small triangle covers at most SMALL x SMALL pixels' centres; SMALL_EXTENT keeps its edge functions in 32 bits.
 const int SMALL = 8;
 const int SMALL_EXTENT = 8192;
@@ -124,6 +128,9 @@ void main() {
             // cache together, which atomics do one after the other.
             int index = origin + y * size.x + x;
             uvec2 seen = imageLoad(uVisibilityTexels, index).xy;
+#ifdef PEEL
+            if (key >= packUint2x32(texelFetch(uLimit, index).xy)) key = 0ul;
+#endif
             if (key > packUint2x32(seen)) atomicMax(visibility[index], key);
         }
     }

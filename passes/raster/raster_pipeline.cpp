@@ -108,6 +108,11 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
         graph.buffer("raster.tiles", {std::uint64_t((width + 15) / 16) * ((height + 15) / 16) * 4});
     const Buffer entry = graph.buffer("raster.entries", {entries * 4});
 
+    std::vector<Binding> limit;
+    if (target.limit) limit = {{"uLimit", *target.limit, Format::RG32UI}};
+    const auto kernel = [&](const Kernel& plain) {
+        return target.limit ? compileVariant(plain, {.defines = {{"PEEL", "1"}}, .generated = {}}) : plain;
+    };
     const bool orthographic = view->orthographic;
     const ComputeOptions projection{.spec = {{"ORTHOGRAPHIC", orthographic}}};
     graph.fill("raster.clearCounts", counts, 0);
@@ -120,8 +125,9 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
         };
 
         graph.fill("raster.clearState", state, 0);
-        graph.compute("raster.setup", shaders::rasterSetup, projection)
+        graph.compute("raster.setup", kernel(shaders::rasterSetup), projection)
             .reads({{"uTriangles", triangles.buffer}})
+            .reads(limit)
             .modifies({{"uVisibility", target.visibility, window},
                        {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
                        {"uState", state},
@@ -162,19 +168,21 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
                                             {"uTiles", tiles, Format::R32UI},
                                             {"uState", state, Format::R32UI}};
         const bool paired = width % 2 == 0;  // two keys at a time
-        Pass tile = paired ? graph.compute("raster.tile", options_.stripRows == 8 ? shaders::rasterTileTall
-                                                                                  : shaders::rasterTile)
-                           : graph.compute("raster.tile", shaders::rasterTileMore,
+        const Kernel& tileKernel = options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile;
+        Pass tile = paired ? graph.compute("raster.tile", kernel(tileKernel))
+                           : graph.compute("raster.tile", kernel(shaders::rasterTileMore),
                                            {.spec = {{"FIRST_SEGMENT", std::uint32_t(0)}}});
         tile.reads(lists)
+            .reads(limit)
             .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
         if (paired) tile.modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
         graph
-            .compute("raster.tileMore", shaders::rasterTileMore,
+            .compute("raster.tileMore", kernel(shaders::rasterTileMore),
                      {.spec = {{"FIRST_SEGMENT", std::uint32_t(1)}}})
             .reads(lists)
+            .reads(limit)
             .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kMoreGroups); });

@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace helio {
 
@@ -70,6 +71,8 @@ struct RasterTarget {
     Buffer visibility;
     std::uint64_t offset = 0;  ///< bytes; a multiple of rasterStride()'s unit
     Buffer counters;           ///< added to
+    /** Peeling: of each pixel only keys below this buffer's (as many as keys) are drawn; none: all are. */
+    std::optional<Buffer> limit = {};
 };
 /** Bytes from one image's keys to the next's in a buffer of several. */
 std::uint64_t rasterStride(std::uint32_t width, std::uint32_t height);

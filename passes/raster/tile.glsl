@@ -29,6 +29,10 @@ layout(set = 0, binding = 4, std430) buffer uCounters { uint64_t counters[]; };
 layout(set = 0, binding = 6) uniform usamplerBuffer uTiles;  ///< state.tileCount tiles that have entries
 layout(set = 0, binding = 7) uniform usamplerBuffer uState;  ///< RasterState
 
+#ifdef PEEL
+layout(set = 0, binding = 9) uniform usamplerBuffer uLimit;  ///< what is not behind these keys is left out
+#endif
+
 // Edge values are cut here: over a tile they change by less than 2^29, so what is cut keeps its sign.
 const int64_t EDGE_LIMIT = 1l << 30;
 
@@ -129,6 +133,14 @@ void main() {
     ivec2 extent = ivec2(15, max(int(gl_SubgroupSize) >> 3, 1) * ROWS - 1);
     u64vec2 best[ROWS];
     [[unroll]] for (int k = 0; k < ROWS; ++k) best[k] = u64vec2(0ul);
+#ifdef PEEL
+    u64vec2 limit[ROWS];
+    [[unroll]] for (int k = 0; k < ROWS; ++k) {
+        ivec2 pixel = min(origin + at + ivec2(0, k), size - 1);
+        int index = pixel.y * size.x + pixel.x, next = pixel.y * size.x + min(pixel.x + 1, size.x - 1);
+        limit[k] = u64vec2(packUint2x32(texelFetch(uLimit, index).xy), packUint2x32(texelFetch(uLimit, next).xy));
+    }
+#endif
     // A workgroup may be smaller than a subgroup.
     uint chunk = min(gl_SubgroupSize, uint(LANES));
     for (uint first = begin; first < end; first += chunk) {
@@ -148,8 +160,11 @@ void main() {
             double left = t.depth + t.depthRight * double(at.x), right = t.depth + t.depthRight * double(at.x + 1);
             double gain = t.depthDown * double(at.y), zLeft = left + gain, zRight = right + gain;
             [[unroll]] for (int k = 0; k < ROWS; ++k) {
-                best[k].x = max(best[k].x, coveredKey(t, edge, zLeft));
-                best[k].y = max(best[k].y, coveredKey(t, edge + t.right, zRight));
+                u64vec2 key = u64vec2(coveredKey(t, edge, zLeft), coveredKey(t, edge + t.right, zRight));
+#ifdef PEEL
+                key = u64vec2(key.x < limit[k].x ? key.x : 0ul, key.y < limit[k].y ? key.y : 0ul);
+#endif
+                best[k] = u64vec2(max(best[k].x, key.x), max(best[k].y, key.y));
                 edge += t.down;
                 // Sums begin again every four rows, so that they round little.
                 if ((k & 3) == 3) {

@@ -50,6 +50,22 @@ glm::dvec2 haltonPoint(std::size_t k) {
     return {inverse(3, k + 1), inverse(5, k + 1)};
 }
 
+/** The view of sample k: from a point of the lens, where there is one. */
+RasterView sampleView(const RasterView& view, const std::optional<ThinLens>& lens, std::size_t k) {
+    return lens ? lensView(view, *lens, lensPoint(*lens, haltonPoint(k))) : view;
+}
+
+/** Tells the application of a finished sample; false where it cancels before the last. */
+bool notifySample(RenderJob& job, std::size_t done, std::size_t all) {
+    const double fraction = double(done) / double(all);
+    return job.notify({.stage = "render",
+                       .fraction = fraction,
+                       .samples = std::uint32_t(done),
+                       .seconds = job.seconds(),
+                       .secondsLeft = job.seconds() * (1 - fraction) / fraction}) ||
+           done == all;
+}
+
 }  // namespace
 
 PackOptions rasterPackOptions() {
@@ -67,10 +83,16 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       raster_(device, {.cullBackFaces = options.cullBackFaces}),
       shadows_(options.shadows),
       filter_(options.textureFilter),
-      shade_(device, scene.deviceScene, scene.bounds, options.shadows, options.textureFilter) {
+      lightSamples_(options.lightSamples),
+      shade_(device, scene.deviceScene, scene.bounds, options.shadows, options.textureFilter,
+             options.lightSamples) {
     makeMips(device);
     makeShadows(device);
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
+    if (shade_.seesThrough() && kind_ != Kind::Multisampling) {
+        makeLayers(device);
+        return;
+    }
     if (!sampled || auxiliary_) makeCentrePlan(device);
     if (kind_ == Kind::Supersampling) makeSupersamplePlan(device);
     if (kind_ == Kind::Multisampling) makeMultisamplePlan(device);
@@ -79,8 +101,8 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
 bool RasterSession::fits(const RasterView& view, const RenderOptions& options) const {
     return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
            options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
-           options.textureFilter == filter_ && options.shadows.kind == shadows_.kind &&
-           options.shadows.resolution == shadows_.resolution &&
+           options.textureFilter == filter_ && options.lightSamples == lightSamples_ &&
+           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
            options.shadows.filterRadius == shadows_.filterRadius &&
            options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
 }
@@ -149,6 +171,59 @@ void RasterSession::makeMultisamplePlan(Device& device) {
     samplePlan_.wait(samplePlan_.execute());
 }
 
+void RasterSession::makeLayers(Device& device) {
+    layerView_ = std::make_shared<RasterView>(*view_);
+    layers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, layerView_);
+    layers_->draw();  // the driver compiles at the first dispatch
+    const std::uint32_t pixels = size_[0] * size_[1];
+    Graph graph(device);
+    const Buffer color = graph.import(layers_->color());
+    if (kind_ == Kind::Supersampling) {
+        sum_.emplace(device, "raster.sum", std::uint64_t(pixels) * 16);
+        declareAdd(graph, color, graph.import(*sum_), pixels, weight_);
+        samplePlan_ = graph.compile({.executionsInFlight = 1});
+        samplePlan_.wait(samplePlan_.execute());
+    } else {
+        color_ = graph.readback<float>(kind_ == Kind::Fxaa ? declareFxaa(graph, color, size_) : color);
+        plan_ = graph.compile({.executionsInFlight = 1});
+        plan_.wait(plan_.execute());
+    }
+}
+
+void RasterSession::drawLayers(const RasterView& view, RenderJob& job) {
+    *layerView_ = view;
+    const AlphaLayers::Drawing drawing =
+        layers_->draw([&](const std::vector<PassTiming>& times) { job.addTimings(times); });
+    drawn_.layers = std::max(drawn_.layers, drawing.layers);
+    drawn_.open = std::max(drawn_.open, drawing.open);
+    for (const RasterCounters& counters : drawing.counters) addWork(counters);
+    shaded_ += std::uint64_t(size_[0]) * size_[1] * drawing.layers;
+}
+
+bool RasterSession::layeredPicture(const RasterView& view, const std::optional<ThinLens>& lens,
+                                   RenderJob& job, std::vector<float>& color) {
+    drawn_ = {};
+    if (kind_ != Kind::Supersampling) {
+        drawLayers(view, job);
+        const Execution done = plan_.execute();
+        color = color_.wait(done);
+        job.addTimings(plan_.timings(done));
+        return true;
+    }
+    const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        drawLayers(shiftedView(sampleView(view, lens, k), positions[k]), job);
+        *weight_ = {1.0f / float(positions.size()), k == 0};
+        const Execution done = samplePlan_.execute();
+        samplePlan_.wait(done);
+        job.addTimings(samplePlan_.timings(done));
+        if (!notifySample(job, k + 1, positions.size())) return false;
+    }
+    color.resize(std::size_t(size_[0]) * size_[1] * 4);
+    sum_->download(color.data(), color.size() * 4);
+    return true;
+}
+
 void RasterSession::makeMips(Device& device) {
     if (!shade_.mips().needed()) return;
     Graph graph(device);
@@ -160,29 +235,17 @@ void RasterSession::makeMips(Device& device) {
 bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
                             std::vector<float>& color) {
     const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
-    const auto add = [&](const RasterCounters& counters) {
-        const auto* from = reinterpret_cast<const std::uint64_t*>(&counters);
-        auto* to = reinterpret_cast<std::uint64_t*>(&work_);
-        for (std::size_t i = 0; i < sizeof counters / 8; ++i) to[i] += from[i];
-    };
     work_ = {};
     shaded_ = 0;
+    if (layers_) return layeredPicture(view, lens, job, color);
     if (kind_ == Kind::Supersampling) {
         for (std::size_t k = 0; k < positions.size(); ++k) {
-            const glm::dvec2 point = lens ? lensPoint(*lens, haltonPoint(k)) : glm::dvec2(0);
-            *sampleViews_[0] = shiftedView(lens ? lensView(view, *lens, point) : view, positions[k]);
+            *sampleViews_[0] = shiftedView(sampleView(view, lens, k), positions[k]);
             *weight_ = {1.0f / float(positions.size()), k == 0};
             const Execution done = samplePlan_.execute();
-            add(counters_.wait(done).at(0));
+            addWork(counters_.wait(done).at(0));
             job.addTimings(samplePlan_.timings(done));
-            const double fraction = double(k + 1) / double(positions.size());
-            if (!job.notify({.stage = "render",
-                             .fraction = fraction,
-                             .samples = std::uint32_t(k + 1),
-                             .seconds = job.seconds(),
-                             .secondsLeft = job.seconds() * (1 - fraction) / fraction}) &&
-                k + 1 < positions.size())
-                return false;
+            if (!notifySample(job, k + 1, positions.size())) return false;
         }
         color.resize(std::size_t(size_[0]) * size_[1] * 4);
         sum_->download(color.data(), color.size() * 4);
@@ -193,7 +256,7 @@ bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens
     Plan& plan = kind_ == Kind::Multisampling ? samplePlan_ : plan_;
     const Execution done = plan.execute();
     color = (kind_ == Kind::Multisampling ? sampleColor_ : color_).wait(done);
-    add(counters_.wait(done).at(0));
+    addWork(counters_.wait(done).at(0));
     shaded_ = std::uint64_t(size_[0]) * size_[1];
     if (kind_ == Kind::Multisampling) {
         const std::vector<std::uint32_t> shadings = shadings_.wait(done);
@@ -203,9 +266,34 @@ bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens
     return true;
 }
 
-void RasterSession::addAuxiliary(Frame& frame, const Execution& execution) const {
-    const std::vector<float> albedoDepth = albedoDepth_.wait(execution), normal = normal_.wait(execution);
-    const std::vector<std::int32_t> ids = ids_.wait(execution);
+void RasterSession::addWork(const RasterCounters& counters) {
+    const auto* from = reinterpret_cast<const std::uint64_t*>(&counters);
+    auto* to = reinterpret_cast<std::uint64_t*>(&work_);
+    for (std::size_t i = 0; i < sizeof counters / 8; ++i) to[i] += from[i];
+}
+
+RasterSession::Auxiliary RasterSession::auxiliary(const RasterView& view, RenderJob& job) {
+    const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
+    Auxiliary hits;
+    if (layers_) {
+        if (sampled) drawLayers(view, job);
+        const std::size_t pixels = std::size_t(size_[0]) * size_[1];
+        hits.albedoDepth.resize(pixels * 4);
+        hits.normal.resize(pixels * 4);
+        hits.ids.resize(pixels * 2);
+        layers_->albedoDepth().download(hits.albedoDepth.data(), pixels * 16);
+        layers_->normal().download(hits.normal.data(), pixels * 16);
+        layers_->ids().download(hits.ids.data(), pixels * 8);
+        return hits;
+    }
+    const Execution centre = plan_.execute();
+    hits = {albedoDepth_.wait(centre), normal_.wait(centre), ids_.wait(centre)};
+    if (sampled) job.addTimings(plan_.timings(centre));
+    return hits;
+}
+
+void RasterSession::addAuxiliary(Frame& frame, const Auxiliary& hits) const {
+    const auto& [albedoDepth, normal, ids] = hits;
     frame.add({"albedo.R", "albedo.G", "albedo.B"}, albedoDepth.data(), 4);
     frame.add({"normal.X", "normal.Y", "normal.Z"}, normal.data(), 4);
     frame.add({"depth.Z"}, albedoDepth.data(), 4, 3);
@@ -231,27 +319,24 @@ void RasterSession::noteCounters(RenderResult& result) const {
                        {"tile_entries", work_.entries},
                        {"tile_triangles_visited", work_.tileVisited},
                        {"pixels_shaded", shaded_}};
+    if (layers_) result.counters.emplace_back("alpha_layers", drawn_.layers);
 }
 
 void RasterSession::render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job) {
     *view_ = view;
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
-    job.graphviz = (sampled ? samplePlan_ : plan_).graphviz();
+    job.graphviz = layers_ ? layers_->graphviz() : (sampled ? samplePlan_ : plan_).graphviz();
     RenderResult& result = job.result;
     job.beginRendering();
     std::vector<float> color;
     if (!picture(view, lens, job, color)) return job.finish();
-    Execution centre;
-    if (auxiliary_) {
-        centre = plan_.execute();
-        plan_.wait(centre);
-        if (sampled) job.addTimings(plan_.timings(centre));
-    }
+    Auxiliary hits;
+    if (auxiliary_) hits = auxiliary(view, job);
     job.finish();
 
     Frame frame(size_[0], size_[1]);
     frame.add({"R", "G", "B"}, color.data(), 4);
-    if (auxiliary_) addAuxiliary(frame, centre);
+    if (auxiliary_) addAuxiliary(frame, hits);
     result.image = frame.image();
     result.samples = std::uint32_t(std::max<std::size_t>(sampleCount_, 1));
     result.nanCount = std::uint64_t(std::ranges::count_if(color, [](float x) { return x != x; }));
@@ -259,6 +344,13 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
         result.warnings.push_back(
             fmt::format("{} colour values of the picture are not numbers", result.nanCount));
     }
+    if (drawn_.open > 0) {
+        result.warnings.push_back(fmt::format("{} pixels have more than {} layers that let light through",
+                                              drawn_.open, AlphaLayers::kMaxLayers));
+    }
+    if (shade_.seesThrough() && !layers_)
+        result.skipped.emplace_back("alpha masks and blending",
+                                    "multisampling draws every surface as opaque; supersampling shows them");
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
     if (lens && kind_ != Kind::Supersampling) {

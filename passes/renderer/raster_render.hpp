@@ -5,6 +5,7 @@
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/render_job.hpp"
+#include "passes/shade/alpha_layers.hpp"
 #include "passes/shade/shade.hpp"
 
 #include <heliograph/graph.hpp>
@@ -38,10 +39,22 @@ private:
     void makeCentrePlan(Device& device);
     void makeSupersamplePlan(Device& device);
     void makeMultisamplePlan(Device& device);
+    /** Instead of the other plans but multisampling's, where surfaces let light through. */
+    void makeLayers(Device& device);
+    void drawLayers(const RasterView& view, RenderJob& job);
+    bool layeredPicture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
+                        std::vector<float>& color);
     /** The picture, vec4 a pixel; false where the application cancels. */
     bool picture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
                  std::vector<float>& color);
-    void addAuxiliary(Frame& frame, const Execution& execution) const;
+    /** First hits, per pixel. */
+    struct Auxiliary {
+        std::vector<float> albedoDepth, normal;
+        std::vector<std::int32_t> ids;
+    };
+    Auxiliary auxiliary(const RasterView& view, RenderJob& job);
+    void addAuxiliary(Frame& frame, const Auxiliary& hits) const;
+    void addWork(const RasterCounters& counters);
     void noteCounters(RenderResult& result) const;
 
     std::array<std::uint32_t, 2> size_;
@@ -52,6 +65,7 @@ private:
     RasterPipeline raster_;
     Shadows shadows_;
     TextureFilter filter_;
+    std::uint32_t lightSamples_;
     ShadePipeline shade_;
     /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;
@@ -65,6 +79,9 @@ private:
     std::optional<DeviceBuffer> sum_;
     Readback<float> sampleColor_;
     Readback<std::uint32_t> shadings_;
+    std::shared_ptr<RasterView> layerView_;
+    std::unique_ptr<AlphaLayers> layers_;
+    AlphaLayers::Drawing drawn_;  ///< most layers and open pixels of this picture
     RasterCounters work_;
     std::uint64_t shaded_ = 0;
 };

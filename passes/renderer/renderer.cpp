@@ -53,6 +53,9 @@ void check(const RenderOptions& options) {
            fmt::format("{} texels", shadows.filterRadius), "give up to 16");
     refuse(!(shadows.lightSize >= 0 && shadows.lightSize < 1e30f), "shadows.lightSize",
            fmt::format("{}", shadows.lightSize), "give a size that is not negative");
+    refuse(options.lightSamples > 4096, "lightSamples",
+           fmt::format("{} lights of a pixel", options.lightSamples),
+           "give at most 4096, or 0 for all lights");
     refuse(options.pipeline == Pipeline::Raster && options.integrator != Integrator::Path, "integrator",
            "the raster pipeline traces no paths", "leave it out");
     refuse(options.adaptive && options.pipeline == Pipeline::Raster, "adaptive",

@@ -277,6 +277,7 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
         packed.lights.push_back(texel(light.normal, float(offset)));
         packed.lights.push_back({glm::uintBitsToFloat(light.g), glm::uintBitsToFloat(light.material),
                                  float(chance), float(surface ? 1.0 / light.area : 0.0)});
+        if (surface) packed.surfaceLightChances.push_back(float(chance));
         if (light.kind == LightKind::Environment)
             packed.environmentMap[0] = {float(chance), glm::uintBitsToFloat(std::uint32_t(i)), 0.0f, 0.0f};
         if (surface) packed.materials[std::size_t(light.material) * kMaterialTexels + 2].x = float(density);

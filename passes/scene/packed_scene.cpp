@@ -49,8 +49,6 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
         skipIf(shines, "gloss of area lights",
                "the raster pipeline shades gloss of punctual lights; surroundings "
                "are reflected as their mean");
-        skipIf((features & kAlphaFeature) != 0, "alpha masks and blending",
-               "the raster pipeline draws every surface as opaque");
         const bool through = m.scattering && (m.scattering->model == Scattering::Model::Dielectric ||
                                               m.scattering->model == Scattering::Model::ThinDielectric);
         skipIf((features & kTransmissionFeature) != 0 || through, "transmission",

@@ -90,6 +90,8 @@ struct PackedScene {
     std::vector<glm::vec4> materials;
     std::uint32_t albedoTables = 0;      ///< first of their texels
     std::vector<glm::vec4> lights;       ///< kLightTexels each
+    /** Chance by power of every light that is a surface: the first rows of `lights`. Stays on the host. */
+    std::vector<float> surfaceLightChances;
     std::vector<glm::uvec4> textures;    ///< offset, width, height, flags
     std::vector<std::uint32_t> texels8;  ///< RGBA8 as stored in the file, R in the low byte
     std::vector<glm::vec4> texelsFloat;  ///< linear float texels

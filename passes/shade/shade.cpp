@@ -1,6 +1,7 @@
 #include "passes/shade/shade.hpp"
 
 #include "passes/raster/push.hpp"
+#include "passes/scene/material_layout.hpp"
 
 #include <fmt/format.h>
 #include <heliograph_kernels/shade.hpp>
@@ -8,7 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <map>
+#include <span>
 #include <string>
 
 namespace helio {
@@ -21,6 +24,24 @@ constexpr std::uint32_t kLightsPerPass = 8192;
 std::uint32_t shadowedLights(const PackedScene& scene) {
     const bool kept = scene.lights.size() >= std::size_t(scene.lightCount) * kLightTexels;
     return scene.punctualLights && kept ? scene.lightCount : 0;
+}
+
+/** Running sums of the surfaces' powers, `samples` strides of drawnIrradiance() in all; every light has some.
+ */
+std::vector<std::uint32_t> lightSums(std::span<const float> chances, std::uint32_t samples) {
+    const std::size_t count = chances.size();
+    const auto chance = [&](std::size_t light) { return std::max(double(chances[light]), 1e-30); };
+    double total = 0;
+    for (std::size_t i = 0; i < count; ++i) total += chance(i);
+    const double all = double(0xffffffffu / samples) * samples;
+    std::vector<std::uint32_t> sums{0};
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        sum += chance(i) / total;
+        const double least = double(sums.back()) + 1, most = all - double(count - 1 - i);
+        sums.push_back(std::uint32_t(std::clamp(std::round(sum * all), least, most)));
+    }
+    return sums;
 }
 
 /** uEnvironment of shaders/raster/shading.glsl. */
@@ -38,13 +59,18 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene)
     : ShadePipeline(device, scene, {}, {.kind = Shadows::Kind::None}) {}
 
 ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds,
-                             const Shadows& shadows, TextureFilter filter)
+                             const Shadows& shadows, TextureFilter filter, std::uint32_t lightSamples)
     : scene_(scene),
       filter_(scene.info().textures.empty() ? TextureFilter::Bilinear : filter),
       mips_(device, filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
                                                         : std::span<const glm::uvec4>()),
       shadowKind_(shadows.kind),
       shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
+      surfaceLights_(std::uint32_t(scene.info().surfaceLightChances.size())),
+      lightSamples_(surfaceLights_ > lightSamples ? lightSamples : 0),
+      lightSums_(makeBuffer(device, "shade.lightSums",
+                            lightSamples_ > 0 ? lightSums(scene.info().surfaceLightChances, lightSamples_)
+                                              : std::vector<std::uint32_t>{0})),
       environment_(makeBuffer(device, "shade.environment", surroundings(scene.info()))),
       maxStorageBufferRange_(device.info().maxStorageBufferRange) {}
 
@@ -65,10 +91,13 @@ struct ShadePipeline::Common {
     std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
     bool hasImage = false;
     std::map<std::string, std::string> materials;  ///< definitions for more than diffuse surfaces
+    std::uint32_t firstLight = 0;                  ///< of those that are taken one by one
+    std::vector<Binding> drawnLights;              ///< where lights are drawn
     /** A kernel for these materials; the one that shows the surroundings where there is an image of them. */
     Kernel kernel(const Kernel& plain, bool surroundingsToo = true) const {
         std::map<std::string, std::string> defines = materials;
         if (hasImage && surroundingsToo) defines["ENVIRONMENT_IMAGE"] = "1";
+        if (!drawnLights.empty() && surroundingsToo) defines["DRAWN_LIGHTS"] = "1";
         if (defines.empty()) return plain;
         return compileVariant(plain, {.defines = defines, .generated = {}});
     }
@@ -108,6 +137,12 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     common.spec["ORTHOGRAPHIC"] = view.orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
     common.firstSpec = common.spec;
+    if (lightSamples_ > 0) {
+        common.firstSpec["LIGHT_SAMPLES"] = std::int32_t(lightSamples_);
+        common.firstSpec["AREA_LIGHTS"] = std::int32_t(surfaceLights_);
+        common.firstLight = surfaceLights_;
+        common.drawnLights = {{"uLightSums", graph.import(lightSums_), Format::R32UI}};
+    }
     common.firstSpec.merge(scene_.constants({"HAS_ENVIRONMENT"}));
     common.firstSpec.merge(scene_.environmentConstants());
     common.hasImage = scene_.hasEnvironmentImage();
@@ -135,19 +170,21 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
     output.ids = graph.buffer("shade.ids", {pixels * 8});
 
     const std::uint32_t lights = scene_.info().lightCount;
-    for (std::uint32_t first = 0; first == 0 || first < lights; first += kLightsPerPass) {
+    const std::uint32_t begin = common.firstLight;
+    for (std::uint32_t first = begin; first == begin || first < lights; first += kLightsPerPass) {
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
-        Pass pass = first == 0 ? graph.compute("shade.surface", common.kernel(shaders::shadeSurface),
-                                               {.spec = common.firstSpec})
-                               : graph.compute("shade.lights", common.kernel(shaders::shadeLights, false),
-                                               {.spec = common.spec});
+        Pass pass = first == begin ? graph.compute("shade.surface", common.kernel(shaders::shadeSurface),
+                                                   {.spec = common.firstSpec})
+                                   : graph.compute("shade.lights", common.kernel(shaders::shadeLights, false),
+                                                   {.spec = common.spec});
         bindScene(graph, pass, common);
         pass.reads({{"uVisibility", raster.visibility}}).record([view, first, count](Commands& c) {
             c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
         });
-        if (first == 0)
+        if (first == begin)
             pass.reads({{"uEnvironment", common.environment, Format::RGBA32F}})
                 .reads(common.surroundings)
+                .reads(common.drawnLights)
                 .overwrites({{"uColor", output.color},
                              {"uAlbedoDepth", output.albedoDepth},
                              {"uNormal", output.normal},
@@ -166,26 +203,54 @@ MultisampleOutput ShadePipeline::declareMultisample(Graph& graph, Buffer visibil
     output.color = graph.buffer("shade.color", {pixels * 16});
     output.shadings = graph.buffer("shade.shadings", {pixels * 4});
     const std::uint32_t lights = scene_.info().lightCount;
-    for (std::uint32_t first = 0; first == 0 || first < lights; first += kLightsPerPass) {
+    const std::uint32_t begin = common.firstLight;
+    for (std::uint32_t first = begin; first == begin || first < lights; first += kLightsPerPass) {
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
         SpecConstants spec = common.firstSpec;
+        if (first != begin) spec["LIGHT_SAMPLES"] = 0;
         spec["SAMPLES"] = std::int32_t(samples);
         spec["SAMPLE_KEYS"] = std::int32_t(rasterStride(view->width, view->height) / 8);
-        spec["FIRST_LIGHTS"] = first == 0;
+        spec["FIRST_LIGHTS"] = first == begin;
         Pass pass =
             graph.compute("shade.multisample", common.kernel(shaders::shadeMultisample), {.spec = spec});
         bindScene(graph, pass, common);
         pass.reads({{"uVisibility", visibility}, {"uEnvironment", common.environment, Format::RGBA32F}})
             .reads(common.surroundings)
+            .reads(common.drawnLights)
             .record([view, first, count](Commands& c) {
                 c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
             });
-        if (first == 0)
+        if (first == begin)
             pass.overwrites({{"uColor", output.color}, {"uShadings", output.shadings}});
         else
             pass.modifies({{"uColor", output.color}, {"uShadings", output.shadings}});
     }
     return output;
+}
+
+bool ShadePipeline::seesThrough() const {
+    return (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
+}
+
+void ShadePipeline::declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,
+                                 std::shared_ptr<const RasterView> view) {
+    const Common common = declareCommon(graph, *view);
+    const std::uint32_t first = common.firstLight;
+    const std::uint32_t count = std::min(kLightsPerPass, scene_.info().lightCount - first);
+    Pass pass = graph.compute("shade.layer", common.kernel(shaders::shadeLayer), {.spec = common.firstSpec});
+    bindScene(graph, pass, common);
+    pass.reads({{"uVisibility", visibility}, {"uEnvironment", common.environment, Format::RGBA32F}})
+        .reads(common.surroundings)
+        .reads(common.drawnLights)
+        .modifies({{"uColor", target.color},
+                   {"uAlbedoDepth", target.albedoDepth},
+                   {"uNormal", target.normal},
+                   {"uIds", target.ids},
+                   {"uLimit", target.limit},
+                   {"uOpen", target.open}})
+        .record([view, first, count](Commands& c) {
+            c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
+        });
 }
 
 std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const {
@@ -206,10 +271,19 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
                                 shadowKind_ == Shadows::Kind::None
                                     ? "--shadows none asked for that"
                                     : "there is no room for maps of so many lights");
+        if (seesThrough() && shadows_.needed())
+            result.emplace_back("alpha in shadows",
+                                "shadow maps take every surface as opaque; the path pipeline does not");
+        if (seesThrough() && info.lightCount > surfaceLights_ + kLightsPerPass)
+            result.emplace_back("lights", fmt::format("layers take the first {} lights", kLightsPerPass));
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }
     for (const auto& skipped : info.rasterSkipped) result.push_back(skipped);
+    if (lightSamples_ > 0)
+        result.emplace_back("light of every emissive surface",
+                            fmt::format("a pixel draws {} of {}; --light-samples 0 takes all", lightSamples_,
+                                        surfaceLights_));
     if (info.texturedEmission && info.areaLights)
         result.emplace_back("texture of emission over a light",
                             "the raster pipeline takes its mean over each triangle");

@@ -39,14 +39,23 @@ struct MultisampleOutput {
     Buffer shadings;  ///< uint: triangles that were shaded for the pixel
 };
 
+/** What layers are added to, per pixel. */
+struct LayerTarget {
+    Buffer color;                     ///< vec4: radiance so far, what of the light behind is stopped
+    Buffer limit;                     ///< 64 bits: the next layer's keys are below; 0 where the pixel is done
+    Buffer albedoDepth, normal, ids;  ///< as ShadeOutput's, of the first layer that stops any light
+    Buffer open;                      ///< uint: pixels that are not done, added to
+};
+
 /** Shades one scene. Must outlive the plans it is declared in, as must the scene. */
 class ShadePipeline {
 public:
     /** Without shadows. */
     ShadePipeline(Device& device, DeviceScene& scene);
-    /** `bounds` are the scene's. */
+    /** `bounds` are the scene's. Where there are more than `lightSamples` emissive surfaces in the light
+     * table, a pixel draws so many of them; 0 takes all of them always. */
     ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows,
-                  TextureFilter filter = TextureFilter::Trilinear);
+                  TextureFilter filter = TextureFilter::Trilinear, std::uint32_t lightSamples = 0);
 
     /** The levels that shading samples; run their passes once before (MipChains::needed, declareMips). */
     MipChains& mips() { return mips_; }
@@ -64,6 +73,13 @@ public:
     MultisampleOutput declareMultisample(Graph& graph, Buffer visibility, std::uint32_t samples,
                                          std::shared_ptr<const RasterView> view);
 
+    /** Whether some surfaces let through part of what is behind: only declareLayer shows it. */
+    bool seesThrough() const;
+    /** Shades the layer of a peeled visibility buffer that is seen through those before, and adds it to the
+     * picture: see passes/shade/alpha_layers.hpp. */
+    void declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,
+                      std::shared_ptr<const RasterView> view);
+
     /** The scene's triangles for RasterPipeline::declare. */
     RasterTriangles triangles(Graph& graph);
 
@@ -80,6 +96,8 @@ private:
     MipChains mips_;
     Shadows::Kind shadowKind_;
     ShadowMaps shadows_;
+    std::uint32_t surfaceLights_, lightSamples_;  ///< 0 samples: lights are taken one by one
+    DeviceBuffer lightSums_;
     DeviceBuffer environment_;
     std::uint64_t maxStorageBufferRange_;
 };

@@ -12,6 +12,6 @@ void main() {
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
     Shaded shaded = shadePoint(pixel, visibility[index]);
-    vec3 light = reflectedLight(shaded);
+    vec3 light = reflectedLight(pixel, shaded);
     if (shaded.hit) color[index].rgb += light;
 }

@@ -126,7 +126,8 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
-        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter"}) {
+        for (const char* option :
+             {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter", "--light-samples"}) {
             if (command.count(option) > 0) {
                 throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
@@ -405,6 +406,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
          {"ewa", TextureFilter::Ewa}},
         "Of the raster pipeline: nearest, bilinear, bicubic, bspline, trilinear (default), "
         "anisotropic, ewa");
+    command
+        ->add_option("--light-samples", options.lightSamples,
+                     "Emissive surfaces that a pixel of the raster pipeline draws where there are more; "
+                     "default 64, 0: all")
+        ->check(CLI::Range(0u, 4096u));
     addChoice<Shadows::Kind>(
         command, "--shadows", options.shadows.kind,
         {{"none", Shadows::Kind::None},

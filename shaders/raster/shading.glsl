@@ -5,6 +5,7 @@
 #include "shaders/raster/polygon_light.glsl"
 #include "shaders/raster/shadow.glsl"
 #include "shaders/raster/surface.glsl"
+#include "shaders/sampling/hash.glsl"
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
 #include "shaders/texture/filters.glsl"
@@ -13,9 +14,14 @@
 #endif
 
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
+layout(constant_id = 128) const int LIGHT_SAMPLES = 0;       ///< emissive surfaces that a pixel draws; 0: push's range has them all
+layout(constant_id = 129) const int AREA_LIGHTS = 0;    ///< their number, where they are drawn
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
 layout(set = 0, binding = 1) uniform usamplerBuffer uSlots;         ///< place of a triangle by its id
 layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first id of every instance
+#ifdef DRAWN_LIGHTS
+layout(set = 0, binding = 11) uniform usamplerBuffer uLightSums;     ///< powers of the lights before, LIGHT_SAMPLES strides in all
+#endif
 layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constant radiance of the surroundings; PackedScene::diffuseEnvironment
 
 /// A material's texture at `row` (3 or 5) over the pixel's footprint; white where there is none.
@@ -47,6 +53,7 @@ struct Shaded {
     int triangle;   // within the instance
     vec3 diffuse;   // of light from many directions
     vec3 mirror;    // of the surroundings, as a smooth surface reflects them
+    float opacity;  // what it stops of the light behind
 #ifdef SURFACE_MATERIALS
     SurfaceBsdf bsdf;
     SurfacePoint point;
@@ -87,7 +94,9 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     shaded.albedo = base.rgb;
     shaded.diffuse = base.rgb;
     shaded.mirror = vec3(0.0);
+    shaded.opacity = 1.0;
 #ifdef SURFACE_MATERIALS
+    if (HAS_ALPHA) shaded.opacity = opacityOf(source.material, base.a);
     shaded.point = rasterPoint(source, surface, shaded.normal);
     shaded.bsdf = rasterBsdf(source, surface, shaded.normal, base.rgb);
     shaded.diffuse = base.rgb * diffuseShare(shaded.bsdf);
@@ -182,9 +191,35 @@ vec3 reflectedSurroundings(vec3 normal) {
     return radiance;
 }
 
+/// Estimate of the irradiance of all emissive surfaces: systematic sampling along the sums of their powers, so that every
+/// light's expected weight is 1 and a pixel's lights are spread over the table. The pixel alone decides: no noise in time.
+vec3 drawnIrradiance(ivec2 pixel, vec3 position, vec3 normal) {
+    vec3 irradiance = vec3(0.0);
+#ifdef DRAWN_LIGHTS
+    const uint stride = 0xffffffffu / uint(LIGHT_SAMPLES);
+    uint at = hashCombine(uint(pixel.x), uint(pixel.y)) % stride;
+    for (int k = 0; k < LIGHT_SAMPLES; ++k) {
+        // The last light whose sum is not above.
+        int low = 0, high = AREA_LIGHTS;
+        while (high - low > 1) {
+            int middle = (low + high) >> 1;
+            bool above = texelFetch(uLightSums, middle).x > at;
+            low = above ? low : middle;
+            high = above ? middle : high;
+        }
+        vec3 direction;
+        float share = float(texelFetch(uLightSums, low + 1).x - texelFetch(uLightSums, low).x);
+        irradiance += lightIrradiance(low, position, normal, direction) * (float(stride) / share);
+        at += stride;
+    }
+#endif
+    return irradiance;
+}
+
 /// Radiance that a surface reflects of the lights push.first to push.first + push.count - 1.
-vec3 reflectedLight(Shaded shaded) {
+vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
     vec3 irradiance = vec3(0.0), gloss = vec3(0.0);
+    if (LIGHT_SAMPLES > 0) irradiance = drawnIrradiance(pixel, shaded.position, shaded.normal);
     if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
         for (uint light = push.first; light < push.first + push.count; ++light) {
             vec3 direction;

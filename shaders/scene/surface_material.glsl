@@ -113,12 +113,16 @@ vec3 mappedNormal(int material, int row, vec4 uv, float scale) {
     return int(texelFetch(uMaterials, material * MATERIAL_TEXELS + row).w) < 0 ? vec3(0.0, 0.0, 1.0) : normalizeSafe(scaled, vec3(0.0, 0.0, 1.0));
 }
 
-/** Chance that a surface of this material stops light: its alpha. */
-float opacity(int material, int g, vec3 b) {
+/** Chance that a surface of this material stops light where its base colour has this alpha. */
+float opacityOf(int material, float alpha) {
     const uint flags = materialFlags(material);
-    const float alpha = baseColor(material, g, b).a;
     const float cutoff = materialRow(material, 2).w;
     return (flags & MATERIAL_MASK) != 0u ? (alpha >= cutoff ? 1.0 : 0.0) : ((flags & MATERIAL_BLEND) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0);
+}
+
+/** The same at a point. */
+float opacity(int material, int g, vec3 b) {
+    return opacityOf(material, baseColor(material, g, b).a);
 }
 
 /** glTF's parameters of a point, but for the coat's normal. `front`: seen from the front side; `channel` (0..2) picks

@@ -117,6 +117,9 @@ struct RenderOptions {
     Antialiasing antialiasing;                               ///< of the raster pipeline
     Shadows shadows;                                         ///< of the raster pipeline
     TextureFilter textureFilter = TextureFilter::Trilinear;  ///< of the raster pipeline
+    /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are more (the same
+     * ones in every picture); 0 takes all of them. Up to 4096. */
+    std::uint32_t lightSamples = 64;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
      * rarely, so that it takes a twentieth of the time at most), when it is cancelled and when it ends;

@@ -1,0 +1,60 @@
+#include "passes/shade/alpha_layers.hpp"
+
+namespace helio {
+namespace {
+
+DeviceBuffer perPixel(Device& device, const char* name, const RasterView& view, std::uint64_t bytes) {
+    return {device, name, std::uint64_t(view.width) * view.height * bytes};
+}
+
+}  // namespace
+
+AlphaLayers::AlphaLayers(Device& device, const RasterPipeline& raster, ShadePipeline& shade,
+                         std::shared_ptr<const RasterView> view)
+    : color_(perPixel(device, "layers.color", *view, 16)),
+      limit_(perPixel(device, "layers.limit", *view, 8)),
+      albedoDepth_(perPixel(device, "layers.albedoDepth", *view, 16)),
+      normal_(perPixel(device, "layers.normal", *view, 16)),
+      ids_(perPixel(device, "layers.ids", *view, 8)) {
+    {
+        Graph graph(device);
+        graph.fill("layers.clearColor", graph.import(color_), 0);
+        graph.fill("layers.openAll", graph.import(limit_), 0xffffffffu);
+        graph.fill("layers.clearAlbedo", graph.import(albedoDepth_), 0);
+        graph.fill("layers.clearNormal", graph.import(normal_), 0);
+        graph.fill("layers.clearIds", graph.import(ids_), 0xffffffffu);  // -1
+        begin_ = graph.compile({.executionsInFlight = 1});
+    }
+    Graph graph(device);
+    const Buffer limit = graph.import(limit_), open = graph.buffer("layers.open", {4});
+    const Buffer visibility = graph.buffer("layers.visibility", {limit_.bytes()}),
+                 counters = graph.buffer("layers.counters", {sizeof(RasterCounters)});
+    graph.fill("layers.clear", visibility, 0);
+    graph.fill("layers.clearCounters", counters, 0);
+    graph.fill("layers.clearOpen", open, 0);
+    raster.declare(graph, shade.triangles(graph), view, {visibility, 0, counters, limit});
+    shade.declareLayer(graph, visibility,
+                       {graph.import(color_), limit, graph.import(albedoDepth_), graph.import(normal_),
+                        graph.import(ids_), open},
+                       view);
+    open_ = graph.readback<std::uint32_t>(open);
+    counters_ = graph.readback<RasterCounters>(counters);
+    layer_ = graph.compile({.executionsInFlight = 1});
+}
+
+AlphaLayers::Drawing AlphaLayers::draw(const std::function<void(const std::vector<PassTiming>&)>& timings) {
+    Drawing drawing;
+    const Execution begun = begin_.execute();
+    begin_.wait(begun);
+    if (timings) timings(begin_.timings(begun));
+    do {
+        const Execution done = layer_.execute();
+        drawing.open = open_.wait(done).at(0);
+        drawing.counters.push_back(counters_.wait(done).at(0));
+        if (timings) timings(layer_.timings(done));
+        ++drawing.layers;
+    } while (drawing.open > 0 && drawing.layers < kMaxLayers);
+    return drawing;
+}
+
+}  // namespace helio

@@ -1,0 +1,47 @@
+// One layer of surfaces that let light through, nearest first: shaded, and added to what the layers before let through.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/raster/shading.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 4, std430) buffer uColor { vec4 color[]; };              ///< RGB, what is stopped
+layout(set = 0, binding = 5, std430) buffer uAlbedoDepth { vec4 albedoDepth[]; };  ///< RGB, distance
+layout(set = 0, binding = 6, std430) buffer uNormal { vec4 normals[]; };           ///< towards the viewer, 0
+layout(set = 0, binding = 7, std430) buffer uIds { ivec2 ids[]; };                 ///< instance, triangle
+layout(set = 0, binding = 12, std430) buffer uLimit { uvec2 limits[]; };
+layout(set = 0, binding = 13, std430) buffer uOpen { uint open; };
+
+/// A pixel is done when so little of the light behind passes: far below an 8-bit picture's steps.
+const float UNSEEN = 1e-5;
+
+void main() {
+    ivec2 size = imageSizePixels(), pixel = ivec2(gl_GlobalInvocationID.xy);
+    bool inside = pixel.x < size.x && pixel.y < size.y;
+    int index = inside ? pixel.y * size.x + pixel.x : 0;
+    uvec2 limit = limits[index];
+    bool isOpen = inside && (limit.x | limit.y) != 0u;
+    uvec2 key = visibility[index];
+    Shaded shaded = shadePoint(pixel, key);
+    vec3 radiance = shaded.emission + reflectedLight(pixel, shaded) +
+                    (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+    vec4 sum = color[index];
+    float passed = 1.0 - sum.w;
+    float stopped = shaded.hit ? shaded.opacity : 1.0;
+    sum.rgb += passed * stopped * (shaded.hit ? radiance : visibleSurroundings(pixel));
+    if (shaded.hit) sum.w = stopped < 1.0 ? sum.w + passed * stopped : 1.0;
+    bool goesOn = isOpen && shaded.hit && 1.0 - sum.w > UNSEEN;
+    if (isOpen) {
+        color[index] = sum;
+        limits[index] = goesOn ? key : uvec2(0u);
+        if (shaded.hit && stopped > 0.0 && ids[index].x < 0) {
+            albedoDepth[index] = vec4(shaded.albedo, shaded.depth);
+            normals[index] = vec4(shaded.normal, 0.0);
+            ids[index] = ivec2(shaded.instance, shaded.triangle);
+        }
+    }
+    uint count = subgroupAdd(uint(goesOn));
+    if (subgroupElect()) atomicAdd(open, count);
+}
