@@ -2,18 +2,17 @@
 // for one scene cannot see. Bit for bit where only order or powers of two change; else by z-scores over
 // independently seeded renders.
 #include "tests/accuracy/path_scenes.hpp"
+#include "tests/stability/measure.hpp"
 #include "tests/stability/variants.hpp"
 #include "tests/support/device.hpp"
 
 #include <heliograph/image.hpp>
 #include <heliograph/renderer.hpp>
-#include <heliograph/verify.hpp>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 
 namespace helio::test {
@@ -29,12 +28,7 @@ constexpr std::uint32_t kSize = 24;
 constexpr Pipeline kBoth[] = {Pipeline::Path, Pipeline::Raster};
 
 RenderOptions options(Pipeline pipeline = Pipeline::Path, std::uint32_t samples = 16) {
-    RenderOptions result;
-    result.pipeline = pipeline;
-    result.size = {kSize, kSize};
-    result.samples = samples;
-    result.sampler = SamplerKind::Independent;  // whose variance channel means what it says
-    return result;
+    return independentSamples(kSize, samples, pipeline);
 }
 
 /** A room with a lamp, a point light, a textured floor, glass, a rough metal and an instance under rotation
@@ -109,21 +103,6 @@ double worst(const std::vector<float>& a, const std::vector<float>& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (a[i] != b[i])
             result = std::max(result, std::abs(double(a[i]) - b[i]) / (std::abs(double(b[i])) + 1e-3));
-    return result;
-}
-
-/** Mean over all values, and its standard error. */
-struct Mean {
-    double value = 0, error = 0;
-};
-Mean mean(const ImageF& image) {
-    Mean result;
-    const std::vector<float> x = colors(image), v = variances(image);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        result.value += x[i] / double(x.size());
-        result.error += v[i] / double(x.size()) / double(x.size());
-    }
-    result.error = std::sqrt(result.error);
     return result;
 }
 
@@ -301,9 +280,9 @@ TEST(Metamorphic, CameraAndLightChangePlaces) {
         return builder.scene;
     };
     RenderOptions settings = options(Pipeline::Path, 512);
-    const Mean there = mean(render(scene(true), settings));
+    const Mean there = meanOf(render(scene(true), settings));
     settings.seed = 1;
-    const Mean back = mean(render(scene(false), settings));
+    const Mean back = meanOf(render(scene(false), settings));
     const double error = std::hypot(there.error, back.error);
     EXPECT_LT(error, 0.01 * there.value);
     EXPECT_LT(std::abs(there.value - back.value), 4 * error) << there.value << " and " << back.value;
@@ -331,7 +310,7 @@ TEST(Metamorphic, OnePixelWideAndHighPicturesAreParts) {
         EXPECT_LT(difference, 1e-3) << (wide ? "one row" : "one column");
         settings = options(Pipeline::Path, 64);
         settings.size = {wide ? n : 1, wide ? 1 : n};
-        const Mean traced = mean(render(strip, settings));
+        const Mean traced = meanOf(render(strip, settings));
         settings.size = {n, n};
         const ImageF image = render(scene, settings);
         double value = 0, variance = 0;
