@@ -1,6 +1,7 @@
 #include "passes/renderer/prepared_scene.hpp"
 
 #include "passes/renderer/raster_render.hpp"
+#include "passes/renderer/scene_warnings.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -52,6 +53,7 @@ PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptio
       warnings(deviceScene.info().warnings) {
     bounds.lower -= origin;
     bounds.upper -= origin;
+    warnOfPrecision(scene, warnings);
     const SceneFeatures all(scene);
     features = all.present();
     for (const SceneFeatures::Absent& absent : all.absent()) skipped.emplace_back(absent.name, absent.why);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace helio {
 namespace {
@@ -20,11 +21,16 @@ int missingSet(const Material& material, const Primitive& primitive) {
     return -1;
 }
 
+std::vector<bool> shownMeshes(const Scene& scene) {
+    std::vector<bool> shown(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances()) shown[std::size_t(instance.mesh)] = true;
+    return shown;
+}
+
 }  // namespace
 
 void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
-    std::vector<bool> shown(scene.meshes.size(), false);
-    for (const Instance& instance : scene.instances()) shown[std::size_t(instance.mesh)] = true;
+    const std::vector<bool> shown = shownMeshes(scene);
     std::string first;
     std::size_t further = 0;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
@@ -68,6 +74,37 @@ void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vecto
             "precision and surfaces may be missing; scale the scene up",
             extent, kSmallestExtent));
     }
+}
+
+void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings) {
+    const std::vector<bool> shown = shownMeshes(scene);
+    std::string first;
+    std::size_t further = 0;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        if (!shown[m]) continue;
+        glm::vec3 lower(std::numeric_limits<float>::infinity()), upper = -lower;
+        for (const Primitive& primitive : scene.meshes[m].primitives)
+            for (const glm::vec3& p : primitive.positions) {
+                lower = glm::min(lower, p);
+                upper = glm::max(upper, p);
+            }
+        const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
+        const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(lower)), glm::abs(glm::dvec3(upper)));
+        const double extent = std::max({size.x, size.y, size.z}),
+                     distance = std::max({reach.x, reach.y, reach.z});
+        if (!(extent > 0) || distance <= kFarthestVertices * extent) continue;
+        if (!first.empty()) {
+            ++further;
+            continue;
+        }
+        first = fmt::format(
+            "mesh {}: its vertices lie {:.2g} of its sizes from their origin, where single precision leaves "
+            "steps "
+            "of {:.1g} of its size; give positions about the mesh and move it by its node",
+            m, distance / extent, distance / extent * double(std::numeric_limits<float>::epsilon()));
+    }
+    if (further > 0) first += fmt::format(" ({} further meshes likewise)", further);
+    if (!first.empty()) warnings.push_back(std::move(first));
 }
 
 }  // namespace helio

@@ -18,4 +18,10 @@ void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings);
 inline constexpr double kLargestCoordinate = 1e11, kSmallestExtent = 1e-9;
 void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vector<std::string>& warnings);
 
+/** Meshes whose vertices lie so many of their own sizes from their origin that single precision no longer
+ * holds their shape: at 1e5 sizes its steps are 1/80 of the size, and pictures of the box sample are off by
+ * half a percent (tests/stability/sweeps.cpp). */
+inline constexpr double kFarthestVertices = 1e5;
+void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings);
+
 }  // namespace helio

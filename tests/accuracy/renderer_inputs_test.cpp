@@ -192,5 +192,19 @@ TEST(RendererInputs, PicturesAreRightAtEveryScaleThatIsNotWarnedOf) {
     }
 }
 
+TEST(RendererInputs, VerticesTooFarFromTheirOriginAreWarnedOf) {
+    for (const float distance : {1e6f, 1e5f}) {
+        Scene scene = glowingSquare();
+        for (glm::vec3& p : scene.meshes[0].primitives[0].positions) p.x += distance;
+        scene.nodes[0].translation.x = -distance;
+        const RenderResult result = renderer().render(scene, small(Pipeline::Raster));
+        EXPECT_EQ(result.image.at(8, 8, 0), 0.5f);
+        ASSERT_EQ(result.warnings.size(), distance > 5e5f ? 1u : 0u);
+        if (!result.warnings.empty()) {
+            EXPECT_NE(result.warnings[0].find("mesh 0"), std::string::npos) << result.warnings[0];
+        }
+    }
+}
+
 }  // namespace
 }  // namespace helio
