@@ -140,7 +140,8 @@ struct PathTracer::Impl {
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         const bool seesThrough = (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
         spec["COUNT_TURNS"] = !unrolled_ || seesThrough;
-        graph.compute("trace", kernel(shaders::trace, defines), {.spec = spec})
+        traceKernel_ = {kernel(options_.kernel ? *options_.kernel : shaders::trace, defines), spec};
+        graph.compute("trace", traceKernel_.kernel, {.spec = spec})
             .reads(scene_.bindings(graph, surfaceBuffers()))
             .reads(scene_.bindings(graph, buffers))
             .reads(cameraBinding(graph))
@@ -228,6 +229,7 @@ struct PathTracer::Impl {
     DeviceBuffer counters_;
     std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
     TraceParameters parameters_{};
+    TraceKernel traceKernel_;
     Plan plan_;
     Readback<DeviceCounters> counted_;
     DeviceCounters last_{};
@@ -292,6 +294,10 @@ FirstHits PathTracer::firstHits() {
 
 std::vector<PassTiming> PathTracer::timings() const {
     return impl_->timings_;
+}
+
+const PathTracer::TraceKernel& PathTracer::traceKernel() const {
+    return impl_->traceKernel_;
 }
 
 std::string PathTracer::graphviz() const {

@@ -47,6 +47,8 @@ struct PathTraceOptions {
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */
     std::uint32_t turnBudget = 30000;
+    /** In place of trace.comp: a benchmark's kernel of the same interface. */
+    const Kernel* kernel = nullptr;
 };
 
 /** Totals since the tracer was made; exact. */
@@ -101,6 +103,13 @@ public:
 
     /** Device times of all dispatches so far, by pass. */
     std::vector<PassTiming> timings() const;
+    /** What the scene's features made of trace.comp, for tests and benchmarks that look at the code. */
+    struct TraceKernel {
+        Kernel kernel;
+        SpecConstants constants;
+    };
+    const TraceKernel& traceKernel() const;
+
     /** Graphviz of the tracing plan. */
     std::string graphviz() const;
     /** What in the scene and options the kernels do not show (yet), and what the scene did not need. */
