@@ -156,8 +156,11 @@ private:
             number(place, "scattering.k", scattering.k[c], 0, 100);
         }
         number(place, "scattering.exponent", scattering.exponent, 0, 1e6f);
-        if (scattering.multipleScattering && scattering.beckmann)
-            refuse(place, "asks for multiple scattering between Beckmann's facets", "take GGX facets");
+        using Model = Scattering::Model;
+        if (scattering.multipleScattering && scattering.model != Model::Conductor &&
+            scattering.model != Model::Dielectric)
+            refuse(place, "asks for multiple scattering between facets that its model has not",
+                   "take the model conductor or dielectric");
     }
 
     void checkVolume(const Material& material, const std::string& place) const {

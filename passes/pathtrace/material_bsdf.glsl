@@ -150,7 +150,7 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
         else
             chosen = ScatterSample(cosineHemisphere(u), vec3(0.0), 1.0);
     }
-    if (HAS_MODELS && bsdf.model != 0u) chosen = modelSample(bsdf.other, bsdf.wo, vec3(u, choice));
+    if (HAS_MODELS && bsdf.model != 0u) chosen = modelDirection(bsdf.other, bsdf.wo, vec3(u, choice));
     SurfaceSample r;
     r.direction = bsdf.frame * chosen.direction;
     const float height = dot(s.face, r.direction);

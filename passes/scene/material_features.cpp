@@ -24,8 +24,7 @@ const RegisterFeature layers{rule("materials.layers", "no clear coat, sheen or t
 const RegisterFeature normalMaps{
     rule("materials.normalMaps", "normals are those of the vertices", pack::kNormalMapFeature)};
 const RegisterFeature alpha{rule("materials.alpha", "every surface stops light", pack::kAlphaFeature)};
-const RegisterFeature models{
-    rule("materials.models", "surfaces scatter as glTF says", pack::kModelFeatures)};
+const RegisterFeature models{rule("materials.models", "surfaces scatter as glTF says", pack::kModelFeatures)};
 
 }  // namespace
 }  // namespace helio

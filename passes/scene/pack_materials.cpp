@@ -1,4 +1,5 @@
 #include "passes/scene/albedo_tables.hpp"
+#include "passes/scene/facet_losses.hpp"
 #include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
 
@@ -189,6 +190,7 @@ glm::dvec3 meanColor(const TextureImage& image) {
 
 namespace {
 
+constexpr std::size_t kScatteringAlphaRow = 42;
 using Rows = std::array<glm::vec4, kMaterialTexels>;
 
 /** Absorption over 1/m: what of light is left after the distance is the colour. No channel dies out wholly.
@@ -213,7 +215,7 @@ void addParameters(const Material& m, Rows& rows) {
         const Scattering& s = *m.scattering;
         rows[40] = {s.n, s.roughness};
         rows[41] = {s.k, s.exponent};
-        rows[42] = {s.alpha, 0.0f, 0.0f};
+        rows[kScatteringAlphaRow] = {s.alpha, 0.0f, 0.0f};  // z: first texel of facetLosses()
     }
 }
 
@@ -272,10 +274,17 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         packed.materials.insert(packed.materials.end(), rows.begin(), rows.end());
     }
     packed.albedoTables = std::uint32_t(packed.materials.size());
-    if ((packed.materialFeatures & (kSheenFeature | kMultipleFeature)) != 0) {
-        const std::vector<glm::vec4> tables = albedoTables((packed.materialFeatures & kSheenFeature) != 0,
-                                                           (packed.materialFeatures & kMultipleFeature) != 0);
-        packed.materials.insert(packed.materials.end(), tables.begin(), tables.end());
+    if ((packed.materialFeatures & kSheenFeature) != 0) {
+        const std::vector<glm::vec4> table = sheenTable();
+        packed.materials.insert(packed.materials.end(), table.begin(), table.end());
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const auto& scattering = scene.materials[i].scattering;
+        if (!materialUsed[i] || !scattering || !scattering->multipleScattering) continue;
+        packed.materials[i * kMaterialTexels + kScatteringAlphaRow].z =
+            glm::uintBitsToFloat(std::uint32_t(packed.materials.size()));
+        const auto table = facetLosses(*scattering);
+        packed.materials.insert(packed.materials.end(), table.begin(), table.end());
     }
     // Diffuse surfaces alone need none of the code that tells materials apart.
     if (packed.materialFeatures == kDiffuseFeatures) packed.materialFeatures = 0;

@@ -13,10 +13,15 @@ FN ScatterValue conductorValue(Vec3 n, Vec3 k, Microfacets m, Vec3 wo, Vec3 wi) 
     ScatterValue v = facetReflection(m, wo, wi, h);
     return ScatterValue(v.value * fresnelConductor(clamp(dot(wo, h), 0.0, 1.0), n, k), v.density);
 }
-FN ScatterSample conductorSample(Vec3 n, Vec3 k, Microfacets m, Vec3 wo, Vec3 u) {
+/// A mirror, or a direction to be judged by conductorValue.
+FN ScatterSample conductorDirection(Vec3 n, Vec3 k, Microfacets m, Vec3 wo, Vec3 u) {
     if (smoothFacets(m)) return mirrorSample(fresnelConductor(wo.z, n, k), wo);
-    Vec3 wi = reflectedAbout(wo, facetSampleNormal(m, wo, Vec2(u.x, u.y)));
-    return sampleOf(wi, conductorValue(n, k, m, wo, wi));
+    return unjudged(reflectedAbout(wo, facetSampleNormal(m, wo, Vec2(u.x, u.y))));
+}
+FN ScatterSample conductorSample(Vec3 n, Vec3 k, Microfacets m, Vec3 wo, Vec3 u) {
+    ScatterSample s = conductorDirection(n, k, m, wo, u);
+    if (s.density < 0.0) return s;
+    return sampleOf(s.direction, conductorValue(n, k, m, wo, s.direction));
 }
 
 #endif

@@ -28,7 +28,8 @@ FN ScatterValue dielectricValue(Real eta, Microfacets m, bool schlick, Vec3 wo, 
                      : fresnelTransmittance(cosine, across, eta);
     return ScatterValue(r * reflected.value + t * through.value, r * reflected.density + t * through.density);
 }
-FN ScatterSample dielectricSample(Real eta, Microfacets m, bool schlick, Vec3 wo, Vec3 u) {
+/// A mirrored or refracted direction, or one to be judged by dielectricValue, or none.
+FN ScatterSample dielectricDirection(Real eta, Microfacets m, bool schlick, Vec3 wo, Vec3 u) {
     bool isSmooth = smoothInterface(m, eta);
     Vec3 h = Vec3(0.0, 0.0, 1.0);
     if (!isSmooth) h = facetSampleNormal(m, wo, Vec2(u.x, u.y));
@@ -39,7 +40,12 @@ FN ScatterSample dielectricSample(Real eta, Microfacets m, bool schlick, Vec3 wo
     if (isSmooth) return ScatterSample(wi, Vec3(reflects ? Real(1.0) : 1.0 / (eta * eta)), -1.0);
     // Mirrored downwards or bent upwards: what a second facet would take, which this model does not follow.
     if (reflects != (wi.z > 0.0)) return noSample();
-    return sampleOf(wi, dielectricValue(eta, m, schlick, wo, wi));
+    return unjudged(wi);
+}
+FN ScatterSample dielectricSample(Real eta, Microfacets m, bool schlick, Vec3 wo, Vec3 u) {
+    ScatterSample s = dielectricDirection(eta, m, schlick, wo, u);
+    if (s.density <= 0.0) return s;
+    return sampleOf(s.direction, dielectricValue(eta, m, schlick, wo, s.direction));
 }
 
 /// Reflectance of a pane of both interfaces with all reflections between them and no absorption.

@@ -21,13 +21,16 @@ FN ScatterValue phongValue(Vec3 reflectance, Real n, Vec3 wo, Vec3 wi) {
     Real lobe = lobePower(clamp(dot(mirrored(wo), wi), 0.0, 1.0), n) * INV_TWO_PI;
     return ScatterValue(reflectance * ((n + 2.0) * lobe * wi.z), (n + 1.0) * lobe);
 }
-FN ScatterSample phongSample(Vec3 reflectance, Real n, Vec3 wo, Vec3 u) {
+FN Vec3 phongDirection(Real n, Vec3 wo, Vec3 u) {
     Real c = samplePower(u.x, n), s = sqrt(max(1.0 - c * c, 0.0));
     Real sine, cosine;
     sinCosTurns(u.y, sine, cosine);
     Vec3 axis = mirrored(wo), x, y;
     orthonormalBasis(axis, x, y);
-    Vec3 wi = x * (s * cosine) + y * (s * sine) + axis * c;
+    return x * (s * cosine) + y * (s * sine) + axis * c;
+}
+FN ScatterSample phongSample(Vec3 reflectance, Real n, Vec3 wo, Vec3 u) {
+    Vec3 wi = phongDirection(n, wo, u);
     return sampleOf(wi, phongValue(reflectance, n, wo, wi));
 }
 
@@ -43,11 +46,14 @@ FN ScatterValue blinnPhongValue(Vec3 reflectance, Real n, Vec3 wo, Vec3 wi) {
     return ScatterValue(reflectance * (blinnPhongNorm(n) * lobe * wi.z),
                         (n + 1.0) * INV_TWO_PI * lobe / (4.0 * max(dot(wo, h), REAL(1e-6))));
 }
-FN ScatterSample blinnPhongSample(Vec3 reflectance, Real n, Vec3 wo, Vec3 u) {
+FN Vec3 blinnPhongDirection(Real n, Vec3 wo, Vec3 u) {
     Real c = samplePower(u.x, n), s = sqrt(max(1.0 - c * c, 0.0));
     Real sine, cosine;
     sinCosTurns(u.y, sine, cosine);
-    Vec3 wi = reflectedAbout(wo, Vec3(s * cosine, s * sine, c));
+    return reflectedAbout(wo, Vec3(s * cosine, s * sine, c));
+}
+FN ScatterSample blinnPhongSample(Vec3 reflectance, Real n, Vec3 wo, Vec3 u) {
+    Vec3 wi = blinnPhongDirection(n, wo, u);
     return sampleOf(wi, blinnPhongValue(reflectance, n, wo, wi));
 }
 

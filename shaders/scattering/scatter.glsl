@@ -37,6 +37,9 @@ FN Vec3 cosineHemisphere(Vec2 u) {
     return Vec3(radius * c, radius * s, sqrt(max(1.0 - u.x, 0.0)));
 }
 
+/// A direction whose worth is still to be judged by its model's value.
+FN ScatterSample unjudged(Vec3 direction) { return ScatterSample(direction, Vec3(0.0), 1.0); }
+
 FN ScatterSample sampleOf(Vec3 direction, ScatterValue v) {
     bool any = v.density > 0.0;
     return ScatterSample(direction, any ? v.value / v.density : Vec3(0.0), any ? v.density : Real(0.0));

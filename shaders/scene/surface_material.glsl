@@ -14,9 +14,10 @@
  * 14..39: textures, two texels each as for the base colour: metallic and roughness, normal, specular, specular
  *   colour, transmission, clearcoat, clearcoat roughness, clearcoat normal, sheen colour, sheen roughness,
  *   anisotropy, iridescence, iridescence thickness
- * 40: Scattering: n, roughness; 41: k, exponent; 42: alpha, 0, 0
+ * 40: Scattering: n, roughness; 41: k, exponent; 42: alpha, first texel of its table of losses, 0
  *
- * Behind the materials lie the tables of directional albedos (passes/scene/albedo_tables.hpp).
+ * Behind the materials lie tables: of sheen's albedo (passes/scene/albedo_tables.hpp), then of what facets lose
+ * (passes/scene/facet_losses.hpp).
  */
 #include "shaders/scene/materials.glsl"
 
@@ -25,7 +26,7 @@ layout(set = 0, binding = 37) uniform samplerBuffer uTangents;  ///< 3 texels a 
 /** Bits of passes/scene/material_layout.hpp: what the materials in use need. A definition, since whole bodies of code
  * go by it. */
 const uint MATERIAL_FEATURES = SURFACE_MATERIALS;
-/** First texel of the tables behind the materials. */
+/** First texel of sheen's table. */
 layout(constant_id = 130) const int ALBEDO_TABLES = 0;
 /** Some material has microfacets of a width; else all that is not diffuse is a mirror or smooth glass. */
 layout(constant_id = 131) const bool HAS_ROUGH_FACETS = true;
@@ -60,8 +61,7 @@ const bool HAS_TANGENTS = HAS_ANISOTROPY || HAS_NORMAL_MAPS || HAS_CLEARCOAT_TEX
 /** Some material's light goes through its surface. */
 const bool HAS_LIGHT_THROUGH = HAS_TRANSMISSION || HAS_MODEL(2u) || HAS_MODEL(3u);
 
-/** A table of 31 x 31 texels, each the four corners of a cell, over the square root of the cosine and the square
- * root of the width. Bilinear. */
+/** A table of 31 x 31 texels, each the four corners of a cell. Bilinear. */
 const int ALBEDO_CELLS = 31;
 float albedoTable(int first, float x, float y) {
     const vec2 at = clamp(vec2(x, y), 0.0, 1.0) * float(ALBEDO_CELLS);
@@ -69,15 +69,11 @@ float albedoTable(int first, float x, float y) {
     const vec4 corner = uintBitsToFloat(texelFetch(uMaterials, ALBEDO_TABLES + first + int(cell.y) * ALBEDO_CELLS + int(cell.x)));
     return mix(mix(corner.x, corner.y, f.x), mix(corner.z, corner.w, f.x), f.y);
 }
-const int SHEEN_TABLE = 0, GGX_TABLE = ALBEDO_CELLS * ALBEDO_CELLS, GGX_MEAN_TABLE = 2 * GGX_TABLE;
 float sheenAlbedo(float cosine, float roughness) {
-    return albedoTable(SHEEN_TABLE, sqrt(max(cosine, 0.0)), roughness);
+    return albedoTable(0, sqrt(max(cosine, 0.0)), roughness);
 }
-float ggxAlbedo(float cosine, float alpha) {
-    return albedoTable(GGX_TABLE, sqrt(max(cosine, 0.0)), sqrt(alpha));
-}
-float ggxMeanAlbedo(float alpha) {
-    return albedoTable(GGX_MEAN_TABLE, 0.0, sqrt(alpha));
+vec4 lossTexel(int i) {
+    return uintBitsToFloat(texelFetch(uMaterials, i));
 }
 
 #include "shaders/scattering/gltf.glsl"
@@ -236,6 +232,8 @@ ModelSurface modelSurface(int material, uint flags, vec3 color, bool front) {
     m.k = row41.xyz;
     m.exponent = row41.w;
     m.eta = front ? m.n.x : 1.0 / m.n.x;
+    m.inside = !front;
+    m.losses = HAS_COMPENSATION ? int(texelFetch(uMaterials, material * MATERIAL_TEXELS + 42).z) : 0;
     m.facets = Microfacets(HAS_ROUGH_FACETS ? resolvedAlpha(row42.xy) : vec2(0.0), (flags & MATERIAL_BECKMANN) != 0u);
     m.schlick = (flags & MATERIAL_SCHLICK) != 0u;
     m.compensated = (flags & MATERIAL_COMPENSATED) != 0u;

@@ -261,7 +261,10 @@ TEST(Furnace, GlassSpheresVanish) {
         SceneBuilder b;
         Material glass;
         if (frosted) {
+            // What facets lose is made up for on both sides.
             glass = model(Scattering::Model::Dielectric);
+            glass.scattering->alpha = glm::vec2(0.5f);
+            glass.scattering->multipleScattering = true;
         } else {
             glass = gltf(glm::vec3(1), 0, 0);
             glass.transmission = 1;
@@ -276,8 +279,8 @@ TEST(Furnace, GlassSpheresVanish) {
         options.sampler = SamplerKind::Independent;
         const Traced image = trace(b.scene, options, 64);
         EXPECT_EQ(image.rejected, 0u);
-        expectMean(estimate(image, 0, [](std::size_t) { return true; }), 1, 2e-3L,
-                   frosted ? "model" : "glTF");
+        expectMean(estimate(image, 0, [](std::size_t) { return true; }), 1, frosted ? 6e-3L : 2e-3L,
+                   frosted ? "frosted" : "glTF");
     }
 }
 
@@ -436,9 +439,9 @@ TEST(Alpha, BlendsMasksAndShadows) {
 }
 
 /** A lamp that alpha makes half transparent gives as much less, whether it is sampled or met by chance, its
- * alpha being a factor, a texture or a mask. */
+ * alpha being a factor and a texture, blended or a mask. */
 TEST(Alpha, LampsAreWeakenedAlikeBothWays) {
-    for (int kind = 0; kind < 3; ++kind) {
+    for (bool isMask : {false, true}) {
         SceneBuilder b;
         const int white = b.material(glm::vec3(1));
         b.quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, white);
@@ -446,17 +449,15 @@ TEST(Alpha, LampsAreWeakenedAlikeBothWays) {
         lamp.specular = 0;
         lamp.emission = glm::vec3(2);
         lamp.doubleSided = true;
-        lamp.alphaMode = kind == 2 ? AlphaMode::Mask : AlphaMode::Blend;
-        lamp.baseColor.a = kind == 0 ? 0.3f : 1.0f;
-        if (kind > 0) {
-            // Half of it opaque, a hard edge.
-            b.scene.images.push_back({"alpha", 2, 1, std::vector<float>{1, 1, 1, 0.125f, 1, 1, 1, 0.75f}});
-            Texture t;
-            t.image = 0;
-            t.magFilter = Filter::Nearest;
-            b.scene.textures.push_back(t);
-            lamp.baseColorTexture.texture = 0;
-        }
+        lamp.alphaMode = isMask ? AlphaMode::Mask : AlphaMode::Blend;
+        lamp.baseColor.a = 0.75f;
+        // A hard edge along the middle.
+        b.scene.images.push_back({"alpha", 2, 1, std::vector<float>{1, 1, 1, 0.125f, 1, 1, 1, 0.75f}});
+        Texture t;
+        t.image = 0;
+        t.magFilter = Filter::Nearest;
+        b.scene.textures.push_back(t);
+        lamp.baseColorTexture.texture = 0;
         b.scene.materials.push_back(lamp);
         const int instance = b.quad({-1, 2, 1}, {1, 2, 1}, {1, 2, -1}, {-1, 2, -1}, 1);
         b.scene.meshes[std::size_t(instance)].primitives[0].texcoords = {
@@ -467,19 +468,19 @@ TEST(Alpha, LampsAreWeakenedAlikeBothWays) {
         options.sampler = SamplerKind::Independent;
         options.maxDepth = 1;
         const auto all = [](std::size_t) { return true; };
-        const Estimate sampled = estimate(trace(b.scene, options, 512), 0, all);
+        const Estimate sampled = estimate(trace(b.scene, options, 256), 0, all);
         options.nextEventEstimation = false;
-        const Estimate chance = estimate(trace(b.scene, options, 2048), 0, all);
+        const Estimate chance = estimate(trace(b.scene, options, 1024), 0, all);
         // Four corners of a unit square at height 2: E = L * form factor * pi, white floor.
         const double a = 0.5L, r = std::sqrt(1 + a * a);
         const double factor = 4 * (2 * a / r * std::atan(a / r)) / (2 * kPi);
-        const double share = std::array<double, 3>{double(0.3f), 0.4375, 0.5}[std::size_t(kind)];
+        const double share = isMask ? 0.5 : 0.75 * 0.4375;
         const double truth = 2 * factor * share;
         EXPECT_LT(std::abs(sampled.mean - truth), 4 * sampled.error)
-            << kind << ": " << sampled.mean << " +- " << sampled.error << ", not " << truth;
+            << isMask << ": " << sampled.mean << " +- " << sampled.error << ", not " << truth;
         EXPECT_LT(std::abs(chance.mean - truth), 4 * chance.error)
-            << kind << ": " << chance.mean << " +- " << chance.error << ", not " << truth;
-        EXPECT_LT(std::max(sampled.error, chance.error), 0.01L * truth);
+            << isMask << ": " << chance.mean << " +- " << chance.error << ", not " << truth;
+        EXPECT_LT(std::max(sampled.error, chance.error), 0.02L * truth);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace helio::test {
@@ -16,6 +17,15 @@ constexpr const char* kFolder = "shaders/scattering/";
 /** Widths of microfacets, isotropic and not, from nearly a mirror to the roughest. */
 const std::vector<glm::vec2> kWidths = {{1e-4f, 1e-4f}, {1e-3f, 1e-3f}, {0.01f, 0.01f}, {0.1f, 0.1f},
                                         {0.5f, 0.5f},   {1.0f, 1.0f},   {0.1f, 0.5f},   {1.0f, 0.02f}};
+
+/** The expression that picks value(i) for an integer i in [low, high): an array would be filled anew by every
+ * invocation. */
+std::string choices(std::size_t low, std::size_t high, const std::function<std::string(std::size_t)>& value) {
+    if (high - low == 1) return value(low);
+    const std::size_t middle = (low + high) / 2;
+    return fmt::format("(i < {} ? {} : {})", middle, choices(low, middle, value),
+                       choices(middle, high, value));
+}
 
 Lobe diffuse() {
     Lobe lobe{
@@ -127,33 +137,35 @@ Lobe sheen() {
 
 /** Directional albedos of sheen at the two roughnesses of the cases, over the square root of the cosine. */
 std::string sheenTables() {
-    constexpr int nodes = 32, columns = 96, rows = 64;
+    constexpr std::size_t nodes = 32;
+    constexpr int columns = 96, rows = 64;
     constexpr double pi = std::numbers::pi;
-    std::string tables = "#define SHEEN_TABLES\n";
-    for (double roughness : {double(0.5L), double(0.1f)}) {
-        tables += fmt::format("const float SHEEN_{}[{}] = float[](", roughness == 0.5L ? 5 : 1, nodes);
-        for (int node = 0; node < nodes; ++node) {
-            const double root = double(node) / (nodes - 1), c = std::max(root * root, double(1e-4L));
-            const glm::dvec3 wo(std::sqrt((1 - c) * (1 + c)), double(0), c);
-            double sum = 0;
-            for (int i = 0; i < columns; ++i)
-                for (int k = 0; k < rows; ++k) {
-                    const double u = (i + 0.5L) / columns, theta = pi / 2 * u * (2 - u);
-                    const double phi = pi * (k + 0.5L) / rows;
-                    const glm::dvec3 wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                        std::cos(theta));
-                    sum += shared64::sheenValue(roughness, wo, wi).value.x * std::sin(theta) * (1 - u);
-                }
-            tables += fmt::format("{}{:.7f}", node > 0 ? ", " : "", sum * 2 * pi * pi / (columns * rows));
-        }
-        tables += ");\n";
+    std::vector<glm::dvec2> table;
+    for (std::size_t node = 0; node < nodes; ++node) {
+        const double root = double(node) / (nodes - 1), c = std::max(root * root, double(1e-4L));
+        const glm::dvec3 wo(std::sqrt((1 - c) * (1 + c)), double(0), c);
+        glm::dvec2 sum(0);
+        for (int i = 0; i < columns; ++i)
+            for (int k = 0; k < rows; ++k) {
+                const double u = (i + 0.5L) / columns, theta = pi / 2 * u * (2 - u),
+                             phi = pi * (k + 0.5L) / rows;
+                const glm::dvec3 wi(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                    std::cos(theta));
+                sum += glm::dvec2(shared64::sheenValue(double(0.1f), wo, wi).value.x,
+                                  shared64::sheenValue(double(0.5f), wo, wi).value.x) *
+                       (std::sin(theta) * (1 - u) * 2 * pi * pi / (columns * rows));
+            }
+        table.push_back(sum);
     }
-    return tables +
-           "float sheenAlbedo(float cosine, float roughness) { float x = sqrt(clamp(cosine, 0.0, 1.0)) * "
-           "31.0; "
-           "int i = min(int(x), 30); float f = x - float(i); return roughness < 0.3 ? mix(SHEEN_1[i], "
-           "SHEEN_1[i + 1], "
-           "f) : mix(SHEEN_5[i], SHEEN_5[i + 1], f); }";
+    const auto cell = [&](std::size_t i) {
+        return fmt::format("vec4({:.7f}, {:.7f}, {:.7f}, {:.7f})", table[i].x, table[i].y, table[i + 1].x,
+                           table[i + 1].y);
+    };
+    return fmt::format(
+        "#define SHEEN_TABLE\nfloat sheenAlbedo(float cosine, float roughness) {{"
+        "float x = sqrt(clamp(cosine, 0.0, 1.0)) * 31.0; int i = min(int(x), 30); vec4 ends = {};"
+        "vec2 both = mix(ends.xy, ends.zw, x - float(i)); return roughness < 0.3 ? both.x : both.y; }}",
+        choices(0, nodes - 1, cell));
 }
 
 /** p[0]: base colour, metallic; p[1]: alpha, eta, transmission; p[2]: f0, f90; p[3]: thin, coat, alpha of the
@@ -260,11 +272,60 @@ glm::vec3 directionAt(float cosine, float azimuth) {
     return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
+Lobe compensatedFacets(const std::string& name, float n, float alpha, bool beckmann) {
+    Lobe lobe{name, {}, {}};
+    lobe.below = n > 0;
+    if (n > 0) lobe.eta = "p[1].w";
+    Scattering s;
+    s.model = n > 0 ? Scattering::Model::Dielectric : Scattering::Model::Conductor;
+    s.alpha = glm::vec2(alpha);
+    s.beckmann = beckmann;
+    s.n = glm::vec3(n > 0 ? n : 0.01f);
+    s.k = glm::vec3(100);
+    const auto table = pack::facetLosses(s);
+    const auto texel = [&](std::size_t i) {
+        const glm::vec4& t = table[i];
+        return fmt::format("vec4({:.8e}, {:.8e}, {:.8e}, {:.8e})", t.x, t.y, t.z, t.w);
+    };
+    for (float eta : {n, 1 / n}) {
+        LobeCase c{fmt::format("n {} eta {} alpha {}{}", n, eta, alpha, beckmann ? " Beckmann" : "")};
+        c.p[1] = {alpha, alpha, beckmann ? 1 : 0, n > 0 ? eta : 0};
+        lobe.cases.push_back(c);
+        if (!(n > 0)) break;
+    }
+    lobe.preamble = {
+        "#define HAS_COMPENSATION true",
+        fmt::format("#define HAS_MODEL(model) ((model) == {}u)", n > 0 ? 2 : 4),
+        fmt::format("#define LOSS_TABLE\nvec4 lossTexel(int i) {{ return {}; }}",
+                    choices(0, table.size(), texel)),
+        fmt::format("{}models.glsl", kFolder),
+        fmt::format(
+            "#define SURFACE(p) ModelSurface({}, vec3(1.0), 0.0, vec3(0.01), vec3(100.0), p[1].w, 0.0, "
+            "Microfacets(p[1].xy, p[1].z > 0.5), false, true, p[1].w < 1.0, 0)",
+            n > 0 ? "MODEL_DIELECTRIC" : "MODEL_CONDUCTOR"),
+        "#define JUDGED\nScatterSample judged(ModelSurface m, vec3 wo, vec3 u) { ScatterSample s = "
+        "modelDirection(m, wo, u); "
+        "if (s.density <= 0.0) return s; return sampleOf(s.direction, modelValue(m, wo, s.direction)); }",
+        "#define VALUE(p, wo, wi) modelValue(SURFACE(p), wo, wi)",
+        "#define SAMPLE(p, wo, u) judged(SURFACE(p), wo, u)"};
+    return lobe;
+}
+
 const std::vector<Lobe>& lobes() {
-    static const std::vector<Lobe> all = {
-        diffuse(),        orenNayar(),           phongLike("phong"), phongLike("blinnPhong"),
-        facets("ggx", 0), facets("beckmann", 1), conductor(),        dielectric(),
-        sheen(),          gltfClear(),           gltfMixed(),        gltfCoated()};
+    static const std::vector<Lobe> all = {diffuse(),
+                                          orenNayar(),
+                                          phongLike("phong"),
+                                          phongLike("blinnPhong"),
+                                          facets("ggx", 0),
+                                          facets("beckmann", 1),
+                                          conductor(),
+                                          dielectric(),
+                                          compensatedFacets("dielectricCompensated", 1.5f, 0.6f, false),
+                                          compensatedFacets("metalCompensated", 0, 0.5f, false),
+                                          sheen(),
+                                          gltfClear(),
+                                          gltfMixed(),
+                                          gltfCoated()};
     return all;
 }
 

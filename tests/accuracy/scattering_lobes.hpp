@@ -4,6 +4,7 @@
  * run them with, extremes included. Parameters are a mat4 `p`; see each lobe's macros for what its columns
  * hold.
  */
+#include "passes/scene/facet_losses.hpp"
 #include "tests/support/shader_harness.hpp"
 
 #include <glm/glm.hpp>
@@ -38,6 +39,10 @@ inline const std::vector<float> kCosines = {1.0f, 0.8f, 0.5f, 0.2f, 0.05f, 1e-3f
 
 /** A direction with a given cosine at a given azimuth (radians). */
 glm::vec3 directionAt(float cosine, float azimuth);
+
+/** Facets with what they lose made up for: an interface to the index n, or for n = 0 a metal that reflects
+ * all. */
+Lobe compensatedFacets(const std::string& name, float n, float alpha, bool beckmann);
 
 const std::vector<Lobe>& lobes();
 const Lobe& lobe(const std::string& name);

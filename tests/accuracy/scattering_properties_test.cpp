@@ -62,20 +62,19 @@ TEST_P(EveryLobe, IsFinitePositiveAndReciprocal) {
     const std::string back =
         "bool through = c.z < 0.0; mat4 q = a; float eta = " + std::string(model.below ? model.eta : "1.0") +
         "; vec3 x = through ? -c : c, y = through ? -b : b; " +
-        (model.below ? (model.name == "dielectric" ? "if (through) q[1].w = 1.0 / q[1].w; "
-                                                   : "if (through && q[3].x < 0.5) q[1].z = 1.0 / q[1].z; ")
-                     : "") +
+        (model.below
+             ? (model.name.starts_with("dielectric") ? "if (through && q[1].w > 0.0) q[1].w = 1.0 / q[1].w; "
+                                                     : "if (through && q[3].x < 0.5) q[1].z = 1.0 / q[1].z; ")
+             : "") +
         "ScatterValue v = VALUE(q, x, y); float squared = through ? eta * eta : 1.0;"
         // p[0].xyz through twice is symmetric; indices: f(wo, wi) / eta_o^2... = f(wi, wo) / eta_i^2...
         "return vec4(v.value / squared, v.density);";
     std::string body = back;
-    if (model.below && model.name != "dielectric") {
+    if (model.below) {
         // The macro takes its case by name.
         std::string eta = model.eta;
         for (std::size_t at; (at = eta.find("p[")) != std::string::npos;) eta.replace(at, 2, "a[");
         body.replace(body.find(model.eta), model.eta.size(), eta);
-    } else if (model.below) {
-        body.replace(body.find("= p[1].w;"), 9, "= a[1].w;");
     }
     const auto reversed = runOnDevice<glm::vec4>(model.lines(), body, p, wo, wi);
     std::size_t violations = 0, compared = 0;
@@ -87,17 +86,17 @@ TEST_P(EveryLobe, IsFinitePositiveAndReciprocal) {
         // Rounded directions: 1e-7 of the half vector's slope, of the length it is made from, and of the
         // cosines to it.
         const glm::dvec3 o(wo[i]), in(wi[i]);
-        const double ratio = in.z > 0                     ? 1.0
-                             : model.name == "dielectric" ? double(p[i][1].w)
-                             : p[i][3].x > 0.5f           ? 1.0
-                                                          : double(p[i][1].z);
+        const double ratio = in.z > 0                               ? 1.0
+                             : model.name.starts_with("dielectric") ? double(p[i][1].w)
+                             : p[i][3].x > 0.5f                     ? 1.0
+                                                                    : double(p[i][1].z);
         const glm::dvec3 sum = in.z < 0 && ratio == 1.0 ? o + glm::dvec3(in.x, in.y, -in.z) : o + ratio * in;
         const double length = glm::length(sum);
         const double facing =
             std::min(std::abs(glm::dot(o, sum)), std::abs(glm::dot(in, sum))) / std::max(length, 1e-12);
         if (std::min({std::abs(in.z), o.z, facing}) < 1e-3 || length < 1e-2) continue;
         // Reflectance rises with infinite slope towards the critical angle.
-        const double inside = model.name == "dielectric" ? double(p[i][1].w) : double(p[i][1].z);
+        const double inside = model.name.starts_with("dielectric") ? double(p[i][1].w) : double(p[i][1].z);
         if (model.below && in.z > 0 && inside < 1 && std::abs(facing * facing + inside * inside - 1) < 5e-3)
             continue;
         const double tolerance = 1e-5 + 2e-6 / alpha + 2e-6 / facing;

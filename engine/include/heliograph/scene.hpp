@@ -76,7 +76,8 @@ struct Scattering {
     glm::vec3 n{1.5f};      ///< refractive index per channel
     glm::vec3 k{0.0f};      ///< extinction per channel
     float exponent = 0;     ///< Phong, BlinnPhong
-    /** GGX alone: adds the light of several reflections between facets, which the model loses otherwise. */
+    /** Conductor, Dielectric: adds the light of several scatterings between facets, which the model loses
+     * otherwise. Where widths along tangent and bitangent differ, what the mean over the azimuth loses. */
     bool multipleScattering = false;
 };
 
