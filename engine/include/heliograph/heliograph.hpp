@@ -5,6 +5,7 @@
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
 #include <heliograph/file.hpp>
+#include <heliograph/fourier.hpp>
 #include <heliograph/graph.hpp>
 #include <heliograph/image.hpp>
 #include <heliograph/kernel.hpp>
