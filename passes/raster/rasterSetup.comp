@@ -94,7 +94,7 @@ void main() {
         ivec3 e = ivec3(edgeAtSmall(p, q, bounds.xy), edgeAtSmall(q, r, bounds.xy), edgeAtSmall(r, p, bounds.xy));
         ivec3 right = ivec3(p.y - q.y, q.y - r.y, r.y - p.y);
         ivec3 down = ivec3(q.x - p.x, r.x - q.x, p.x - r.x);
-        int low = floatBitsToInt(plane.low), high = floatBitsToInt(plane.high);
+        int low = depthCode(double(plane.low)), high = depthCode(double(plane.high));
         uint id = uint(source.g);
         visited += valid ? uint(cells.x * cells.y) : 0u;
         // First which pixels are covered, row by row, then those alone: an atomic's code costs far more than a test,

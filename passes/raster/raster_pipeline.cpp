@@ -114,13 +114,20 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
         return target.limit ? compileVariant(plain, {.defines = {{"PEEL", "1"}}, .generated = {}}) : plain;
     };
     const bool orthographic = view->orthographic;
-    const ComputeOptions projection{.spec = {{"ORTHOGRAPHIC", orthographic}}};
+    const ComputeOptions projection{
+        .spec = {{"ORTHOGRAPHIC", orthographic}, {"DEPTH_FORMAT", std::int32_t(options_.depth)}}};
+    const auto tiled = [&](std::uint32_t firstSegment) {
+        ComputeOptions options = projection;
+        options.spec["FIRST_SEGMENT"] = firstSegment;
+        return options;
+    };
     graph.fill("raster.clearCounts", counts, 0);
     for (std::uint32_t first = 0; first < triangles.count; first += batch) {
         const std::uint32_t count = std::min(batch, triangles.count - first);
         const std::uint32_t flags = options_.cullBackFaces ? kRasterCullBack : 0u;
-        const auto push = [view, flags, first, count, orthographic] {
+        const auto push = [view, flags, first, count, orthographic, depth = options_.depth] {
             assert(view->orthographic == orthographic);
+            assert(orthographic || depth == DepthFormat::Reversed || view->depthSlope > 0);
             return makeRasterPush(*view, flags, first, count);
         };
 
@@ -169,18 +176,15 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
                                             {"uState", state, Format::R32UI}};
         const bool paired = width % 2 == 0;  // two keys at a time
         const Kernel& tileKernel = options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile;
-        Pass tile = paired ? graph.compute("raster.tile", kernel(tileKernel))
-                           : graph.compute("raster.tile", kernel(shaders::rasterTileMore),
-                                           {.spec = {{"FIRST_SEGMENT", std::uint32_t(0)}}});
+        Pass tile = paired ? graph.compute("raster.tile", kernel(tileKernel), projection)
+                           : graph.compute("raster.tile", kernel(shaders::rasterTileMore), tiled(0));
         tile.reads(lists)
             .reads(limit)
             .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
         if (paired) tile.modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
-        graph
-            .compute("raster.tileMore", kernel(shaders::rasterTileMore),
-                     {.spec = {{"FIRST_SEGMENT", std::uint32_t(1)}}})
+        graph.compute("raster.tileMore", kernel(shaders::rasterTileMore), tiled(1))
             .reads(lists)
             .reads(limit)
             .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})

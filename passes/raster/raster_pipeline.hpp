@@ -13,6 +13,7 @@
 
 #include <heliograph/device.hpp>
 #include <heliograph/graph.hpp>
+#include <heliograph/renderer.hpp>
 
 #include <array>
 #include <cstdint>
@@ -36,6 +37,8 @@ struct RasterOptions {
     /** Rows of two columns that an invocation of the tile kernel owns, 4 or 8; 0 chooses by the device's
      * subgroups. Results do not depend on it. */
     std::uint32_t stripRows = 0;
+    /** Depth of the keys. Perspective views of the conventional formats are made by conventionalDepth(). */
+    DepthFormat depth = DepthFormat::Reversed;
 };
 
 /** Work done for an image, summed over the batches. */

@@ -80,7 +80,7 @@ bool mayTouch(TileTriangle t, ivec2 first, ivec2 extent) {
 
 /// Key of a pixel; where the triangle does not cover it, one of depth 0: behind everything, and at the end a miss.
 uint64_t coveredKey(TileTriangle t, ivec3 edge, double z) {
-    int depth = clamp(floatBitsToInt(float(z)), t.low, t.high) & ~((edge.x | edge.y | edge.z) >> 31);
+    int depth = clamp(depthCode(z), t.low, t.high) & ~((edge.x | edge.y | edge.z) >> 31);
     return visibilityKey(depth, t.id);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace helio {
@@ -73,6 +74,31 @@ RasterView lensView(const RasterView& view, const ThinLens& lens, const glm::dve
     result.rowX += glm::dot(moved, across) * perFocus * view.rowW;
     result.rowY += glm::dot(moved, down) * perFocus * view.rowW;
     return result;
+}
+
+void conventionalDepth(RasterView& view, double farDistance) {
+    assert(!view.orthographic && view.depthOffset > 0);
+    const double far = farDistance > view.depthOffset ? farDistance : 2 * view.depthOffset;
+    view.depthSlope = far / (far - view.depthOffset);
+}
+
+double resolvableDepth(const RasterView& view, DepthFormat format, double z) {
+    // Reversed depth d and how fast it falls; conventional depth is scale (1 - d).
+    const double d = view.orthographic ? view.depthOffset + view.depthSlope * z : view.depthOffset / z;
+    const double slope = view.orthographic ? -view.depthSlope : view.depthOffset / (z * z);
+    const double scale = view.orthographic ? 1 : view.depthSlope;
+    const auto ulp = [](double value) { return std::ldexp(1.0, std::ilogb(value) - 23); };
+    switch (format) {
+        case DepthFormat::Reversed:
+            return ulp(d) / slope;
+        case DepthFormat::Float:
+            return ulp(scale * (1 - d)) / (scale * slope);
+        case DepthFormat::Unorm24:
+            return 1 / 16777215.0 / (scale * slope);
+        case DepthFormat::Unorm16:
+            return 1 / 65535.0 / (scale * slope);
+    }
+    return 0;
 }
 
 }  // namespace helio

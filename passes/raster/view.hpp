@@ -1,5 +1,6 @@
 #pragma once
 /** @file The camera as the rasterizer takes it. shaders/raster/view.glsl says how the rows are used. */
+#include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
 
 #include <glm/glm.hpp>
@@ -16,7 +17,8 @@ struct RasterView {
     glm::dvec3 rowY{0.0};  ///< Y = rowY.d (+ height/2 where orthographic)
     glm::dvec3 rowW{
         0.0};  ///< distance along the viewing axis = rowW.d: the projective w of a perspective view
-    /** Perspective: distance of the near plane; depth = depthOffset / w. Orthographic: depth = depthOffset +
+    /** Perspective: distance of the near plane; depth = depthOffset / w, and depthSlope is what
+     * conventionalDepth() puts there. Orthographic: depth = depthOffset +
      * depthSlope (rowW.d). Depth is 1 at the near plane and falls with distance, 0 is infinitely far. */
     double depthOffset = 0.0;
     double depthSlope = 0.0;
@@ -40,5 +42,12 @@ RasterView makeRasterView(const glm::dmat4& cameraToWorld, const Camera& camera,
 /** The perspective view of a point of a thin lens: `point` in units of the lens's radius, to the right and
  * up. What lies in the sharp plane stays where it is in the image. */
 RasterView lensView(const RasterView& view, const ThinLens& lens, const glm::dvec2& point);
+
+/** Gives a perspective view what the conventional depth formats need: a far distance beyond the near one. */
+void conventionalDepth(RasterView& view, double farDistance);
+
+/** Least difference of distances along the axis that a view's depths tell apart at the distance z, in theory:
+ * a step of the format over the slope of what it holds. */
+double resolvableDepth(const RasterView& view, DepthFormat format, double z);
 
 }  // namespace helio

@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace helio {
@@ -80,7 +81,8 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       kind_(options.antialiasing.kind),
       sampleCount_(options.antialiasing.positions.size()),
       view_(std::make_shared<RasterView>(view)),
-      raster_(device, {.cullBackFaces = options.cullBackFaces}),
+      depth_(options.depthFormat),
+      raster_(device, {.cullBackFaces = options.cullBackFaces, .depth = options.depthFormat}),
       shadows_(options.shadows),
       filter_(options.textureFilter),
       lightSamples_(options.lightSamples),
@@ -102,7 +104,8 @@ bool RasterSession::fits(const RasterView& view, const RenderOptions& options) c
     return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
            options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
            options.textureFilter == filter_ && options.lightSamples == lightSamples_ &&
-           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
+           options.depthFormat == depth_ && options.shadows.kind == shadows_.kind &&
+           options.shadows.resolution == shadows_.resolution &&
            options.shadows.filterRadius == shadows_.filterRadius &&
            options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
 }
@@ -374,8 +377,14 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
     const double farthest = farthestDistance(view.transform, scene.bounds);
     // The default near distance comes from the camera's znear, which a tiny scene may lie wholly before.
     const bool isTiny = view.camera.perspective && farthest < double(view.camera.znear);
-    const RasterView rasterView =
-        makeRasterView(view.transform, view.camera, job.options.size, isTiny ? 1e-6 * farthest : 0, farthest);
+    double nearest = isTiny ? 1e-6 * farthest : 0;
+    // The conventional formats are those of the camera's own range, for better or worse.
+    const bool conventional = job.options.depthFormat != DepthFormat::Reversed;
+    const double znear = double(view.camera.znear), zfar = double(view.camera.zfar);
+    if (conventional && view.camera.perspective && !isTiny && znear > 0) nearest = znear;
+    RasterView rasterView = makeRasterView(view.transform, view.camera, job.options.size, nearest, farthest);
+    if (conventional && view.camera.perspective)
+        conventionalDepth(rasterView, std::isfinite(zfar) && zfar > 0 ? zfar : farthest);
     if (!scene.raster || !scene.raster->fits(rasterView, job.options)) {
         scene.raster.reset();
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);

@@ -62,6 +62,7 @@ private:
     Kind kind_;
     std::size_t sampleCount_;
     std::shared_ptr<RasterView> view_;
+    DepthFormat depth_;
     RasterPipeline raster_;
     Shadows shadows_;
     TextureFilter filter_;

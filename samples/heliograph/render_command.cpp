@@ -126,8 +126,8 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
-        for (const char* option :
-             {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter", "--light-samples"}) {
+        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter",
+                                   "--light-samples", "--depth"}) {
             if (command.count(option) > 0) {
                 throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
@@ -406,6 +406,13 @@ void addRenderCommand(CLI::App& app, Command& run) {
          {"ewa", TextureFilter::Ewa}},
         "Of the raster pipeline: nearest, bilinear, bicubic, bspline, trilinear (default), "
         "anisotropic, ewa");
+    addChoice<DepthFormat>(command, "--depth", options.depthFormat,
+                           {{"reversed", DepthFormat::Reversed},
+                            {"float", DepthFormat::Float},
+                            {"unorm24", DepthFormat::Unorm24},
+                            {"unorm16", DepthFormat::Unorm16}},
+                           "Depth of the raster pipeline: reversed (default, float32 without a far plane); "
+                           "to compare, over the camera's znear to zfar: float, unorm24, unorm16");
     command
         ->add_option("--light-samples", options.lightSamples,
                      "Emissive surfaces that a pixel of the raster pipeline draws where there are more; "

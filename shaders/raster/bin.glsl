@@ -49,8 +49,8 @@ Record makeRecord(ivec2 p, ivec2 q, ivec2 r, DepthPlane plane, uint id, ivec2 si
     record.q = area < 0 ? r : q;
     record.r = area < 0 ? q : r;
     record.id = id;
-    record.low = floatBitsToInt(plane.low);
-    record.high = floatBitsToInt(plane.high);
+    record.low = depthCode(double(plane.low));
+    record.high = depthCode(double(plane.high));
     record.a = plane.a;
     record.b = plane.b;
     record.c = plane.c;

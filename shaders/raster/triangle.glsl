@@ -2,6 +2,9 @@
 #ifndef SHADERS_RASTER_TRIANGLE_GLSL
 #define SHADERS_RASTER_TRIANGLE_GLSL
 
+layout(constant_id = 124) const int DEPTH_FORMAT = 0;  ///< DEPTH_*: how depths are told apart
+const int DEPTH_REVERSED = 0, DEPTH_FLOAT = 1, DEPTH_UNORM24 = 2, DEPTH_UNORM16 = 3;
+
 // Vertices are snapped to 1/256 pixel: s = floor(256 X/w + 1/2), components apart.
 const int SUBPIXELS = 256;
 const int HALF_PIXEL = 128;
@@ -99,10 +102,20 @@ DepthPlane depthPlane(HomogeneousVertex p0, HomogeneousVertex p1, HomogeneousVer
     return plane;
 }
 
-/// Bits of the depth at a pixel's centre. Positive floats order as their bits do, so clamping integers also
-/// catches negative values and NaN.
+/// What a key holds of a depth d, larger where nearer. Of reversed floats the bits: positive floats order as their bits
+/// do, so clamping integers also catches negative values and NaN. Of the conventional formats, from 0 at the near plane to
+/// 1 at the far one and beyond it, the steps that are left to 1, and one: 0 is a miss.
+int depthCode(double d) {
+    if (DEPTH_FORMAT == DEPTH_REVERSED) return floatBitsToInt(float(d));
+    double rest = 1.0LF - d;
+    double conventional = clamp(ORTHOGRAPHIC ? rest : rest * push.depthSlope, 0.0LF, 1.0LF);
+    if (DEPTH_FORMAT == DEPTH_FLOAT) return 0x3f800001 - floatBitsToInt(float(conventional));
+    int steps = DEPTH_FORMAT == DEPTH_UNORM24 ? 16777215 : 65535;
+    return steps + 1 - int(conventional * double(steps) + 0.5LF);
+}
+
 int depthBits(double a, double rowTerm, double x, int low, int high) {
-    return clamp(floatBitsToInt(float(a * x + rowTerm)), low, high);
+    return clamp(depthCode(a * x + rowTerm), low, high);
 }
 
 /// The key of the visibility buffer: nearer (larger depth) wins, then the smaller id. 0 is a miss.

@@ -14,7 +14,7 @@ layout(push_constant, std430) uniform RasterPush {
     dvec4 rowY;          // xyz, and the eye's y
     dvec4 rowW;          // xyz, and the eye's z
     double depthOffset;
-    double depthSlope;
+    double depthSlope;   // orthographic; of a perspective view in a conventional format far / (far - near)
     uint size;           // width | height << 16, pixels
     uint first;          // first triangle of the batch
     uint count;          // triangles of the batch

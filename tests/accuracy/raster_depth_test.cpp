@@ -263,5 +263,54 @@ TEST(RasterView, PixelsOfACamera) {
     EXPECT_THROW(makeRasterView(glm::dmat4(0.0), camera, {4, 4}), InputError);
 }
 
+/** Row Z2: share of pixels on which, of two parallel planes `apart`, the farther is seen; the view leans, so
+ * that the pixels' depths lie anywhere between two steps. */
+double fighting(RasterRunner& runner, RasterView view, double z, double apart) {
+    // The planes are at the world's origin and the eye is away: floats keep the small difference.
+    view.eye = {0, 0, z};
+    std::vector<RasterTriangle> list;
+    const float w = float(z);
+    for (std::uint32_t id : {0u, 1u}) {  // of equal depths the smaller id is seen: the farther plane's
+        const float at = id == 0 ? -float(apart) : 0.0f;
+        list.push_back(triangle({-4 * w, -4 * w, at}, {8 * w, -4 * w, at}, {-4 * w, 8 * w, at}, id));
+    }
+    const RasterResult result = runner.run(view, list);
+    std::uint64_t wrong = 0;
+    for (const std::uint64_t key : result.keys) wrong += visibleTriangle(key) == 0;
+    return double(wrong) / double(result.keys.size());
+}
+
+TEST(RasterPrecision, PlanesFightUpToThePredictedDifference) {
+    constexpr std::uint32_t size = 64;
+    for (const DepthFormat format :
+         {DepthFormat::Reversed, DepthFormat::Float, DepthFormat::Unorm24, DepthFormat::Unorm16}) {
+        RasterRunner runner(size, size, 2, {.depth = format});
+        for (const double z : {1.0, 10.0, 100.0}) {
+            RasterView view;
+            view.rowW = {std::sin(0.1), 0, -std::cos(0.1)};
+            view.rowX = double(size) * glm::dvec3(std::cos(0.1), 0, std::sin(0.1)) + 0.5 * size * view.rowW;
+            view.rowY = glm::dvec3(0, -double(size), 0) + 0.5 * size * view.rowW;
+            view.width = view.height = size;
+            view.depthOffset = 0.1;
+            conventionalDepth(view, 1000);
+            const double predicted = resolvableDepth(view, format, z);
+            // Two depths fall into one step with the chance 1 - difference / step: half of the pixels are
+            // wrong where the planes are half a step apart. (The lean changes the step by a tenth of z: 2 *
+            // 10 %.)
+            double low = 0, high = 64 * predicted;
+            for (int k = 0; k < 24; ++k) {
+                const double middle = 0.5 * (low + high);
+                (fighting(runner, view, z, middle) > 0.5 ? low : high) = middle;
+            }
+            const double measured = 2 * high;
+            std::printf("depth format %d, z %g: predicted step %.3g, measured %.3g\n", int(format), z,
+                        predicted, measured);
+            EXPECT_GT(measured, 0.5 * predicted);
+            EXPECT_LT(measured, 2 * predicted);
+            EXPECT_EQ(fighting(runner, view, z, 4 * predicted), 0.0);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace helio::test

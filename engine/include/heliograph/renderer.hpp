@@ -90,6 +90,16 @@ enum class TextureFilter : std::uint8_t {
     Ewa           ///< elliptical weighted average: a Gaussian over the footprint's ellipse
 };
 
+/** How the raster pipeline's z-buffer holds depth. The first tells apart differences of about z 2^-24 at any
+ * distance z; the others, there to compare with, run from 0 at the camera's znear to 1 at its zfar (or where
+ * the scene ends), beyond which nothing is told apart, and lose precision with the distance's square. */
+enum class DepthFormat : std::uint8_t {
+    Reversed,  ///< float32 of near / z: 1 at the near plane, 0 infinitely far
+    Float,     ///< float32 of far (z - near) / (z (far - near))
+    Unorm24,   ///< the same in 2^24 - 1 steps
+    Unorm16    ///< the same in 65,535 steps
+};
+
 struct RenderOptions {
     std::array<std::uint32_t, 2> size = {1280, 720};  ///< pixels
     Pipeline pipeline = Pipeline::Path;
@@ -117,6 +127,7 @@ struct RenderOptions {
     Antialiasing antialiasing;                               ///< of the raster pipeline
     Shadows shadows;                                         ///< of the raster pipeline
     TextureFilter textureFilter = TextureFilter::Trilinear;  ///< of the raster pipeline
+    DepthFormat depthFormat = DepthFormat::Reversed;         ///< of the raster pipeline
     /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are more (the same
      * ones in every picture); 0 takes all of them. Up to 4096. */
     std::uint32_t lightSamples = 64;
