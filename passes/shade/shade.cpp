@@ -20,6 +20,10 @@ namespace {
 /** Lights of one pass: some drivers end loops silently after 65,535 iterations. */
 constexpr std::uint32_t kLightsPerPass = 8192;
 
+/** Lights are drawn where there are so many times as many as are drawn: near small ones a pixel's draw is
+ * rough, and few cost little. */
+constexpr std::uint32_t kManyLights = 16;
+
 /** Lights for which there may be maps: none where the table is too long to be kept on the host. */
 std::uint32_t shadowedLights(const PackedScene& scene) {
     const bool kept = scene.lights.size() >= std::size_t(scene.lightCount) * kLightTexels;
@@ -67,7 +71,7 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bo
       shadowKind_(shadows.kind),
       shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
       surfaceLights_(std::uint32_t(scene.info().surfaceLightChances.size())),
-      lightSamples_(surfaceLights_ > lightSamples ? lightSamples : 0),
+      lightSamples_(surfaceLights_ > kManyLights * lightSamples ? lightSamples : 0),
       lightSums_(makeBuffer(device, "shade.lightSums",
                             lightSamples_ > 0 ? lightSums(scene.info().surfaceLightChances, lightSamples_)
                                               : std::vector<std::uint32_t>{0})),

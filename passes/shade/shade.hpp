@@ -52,7 +52,7 @@ class ShadePipeline {
 public:
     /** Without shadows. */
     ShadePipeline(Device& device, DeviceScene& scene);
-    /** `bounds` are the scene's. Where there are more than `lightSamples` emissive surfaces in the light
+    /** `bounds` are the scene's. Where there are over 16 `lightSamples` emissive surfaces in the light
      * table, a pixel draws so many of them; 0 takes all of them always. */
     ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows,
                   TextureFilter filter = TextureFilter::Trilinear, std::uint32_t lightSamples = 0);

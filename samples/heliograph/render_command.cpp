@@ -415,7 +415,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
                            "to compare, over the camera's znear to zfar: float, unorm24, unorm16");
     command
         ->add_option("--light-samples", options.lightSamples,
-                     "Emissive surfaces that a pixel of the raster pipeline draws where there are more; "
+                     "Emissive surfaces that a pixel of the raster pipeline draws where there are over 16 "
+                     "times as many; "
                      "default 64, 0: all")
         ->check(CLI::Range(0u, 4096u));
     addChoice<Shadows::Kind>(

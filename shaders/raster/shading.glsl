@@ -192,12 +192,14 @@ vec3 reflectedSurroundings(vec3 normal) {
 }
 
 /// Estimate of the irradiance of all emissive surfaces: systematic sampling along the sums of their powers, so that every
-/// light's expected weight is 1 and a pixel's lights are spread over the table. The pixel alone decides: no noise in time.
+/// light's expected weight is 1 and a pixel's lights are spread over the table. The pixel and the view decide: a picture
+/// comes out the same again, and shifted views (supersampling) draw others.
 vec3 drawnIrradiance(ivec2 pixel, vec3 position, vec3 normal) {
     vec3 irradiance = vec3(0.0);
 #ifdef DRAWN_LIGHTS
     const uint stride = 0xffffffffu / uint(LIGHT_SAMPLES);
-    uint at = hashCombine(uint(pixel.x), uint(pixel.y)) % stride;
+    uvec2 view = unpackDouble2x32(push.rowX.x + push.rowX.y + push.rowX.z + push.rowX.w + push.rowY.w + push.rowW.w);
+    uint at = hashCombine(hashCombine(uint(pixel.x), uint(pixel.y)), view.x ^ view.y) % stride;
     for (int k = 0; k < LIGHT_SAMPLES; ++k) {
         // The last light whose sum is not above.
         int low = 0, high = AREA_LIGHTS;

@@ -128,8 +128,8 @@ struct RenderOptions {
     Shadows shadows;                                         ///< of the raster pipeline
     TextureFilter textureFilter = TextureFilter::Trilinear;  ///< of the raster pipeline
     DepthFormat depthFormat = DepthFormat::Reversed;         ///< of the raster pipeline
-    /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are more (the same
-     * ones in every picture); 0 takes all of them. Up to 4096. */
+    /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are over 16 times as
+     * many; a picture comes out the same again. 0 takes all of them. Up to 4096. */
     std::uint32_t lightSamples = 64;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
