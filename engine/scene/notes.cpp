@@ -20,7 +20,9 @@ void skip(Scene& scene, const std::string& what, const std::string& why) {
 }
 
 void warn(Scene& scene, const std::string& message) {
-    if (scene.warnings.size() < enough) scene.warnings.push_back(message);
+    if (scene.warnings.size() >= enough) return;
+    if (std::find(scene.warnings.begin(), scene.warnings.end(), message) == scene.warnings.end())
+        scene.warnings.push_back(message);
 }
 
 }  // namespace helio

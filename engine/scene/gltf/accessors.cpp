@@ -106,6 +106,12 @@ Asset::Asset(Container container)
     }
 }
 
+std::vector<std::string> Asset::remarks() const {
+    std::vector<std::string> remarks = container_.warnings;
+    remarks.insert(remarks.end(), oddAccessors_.begin(), oddAccessors_.end());
+    return remarks;
+}
+
 std::vector<std::string> Asset::misaligned() const {
     std::vector<std::string> places;
     for (std::size_t i = 0; i < accessors_.size(); ++i) {
@@ -181,6 +187,11 @@ Asset::Layout Asset::layout(int index) const {
                fmt::format("is {}: the elements run over the end of their buffer view", count),
                "keep the elements within the buffer view");
     }
+    for (const int view : {sparse.indexView, sparse.valueView}) {
+        if (views_[std::size_t(view)].byteStride != 0)
+            oddAccessors_.insert(
+                fmt::format("accessors[{}].sparse: byteStride is left out, its elements are packed", index));
+    }
     layout.sparseIndices = indexBytes.subspan(sparse.indexOffset);
     layout.sparseValues = valueBytes.subspan(sparse.valueOffset);
     return layout;
@@ -215,8 +226,12 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
     if (!accessor.sparse) return;
     const Component indexType = accessor.sparse->indexType;
     const std::size_t indexSize = sizeOf(indexType);
+    double last = -1;
     for (std::size_t i = 0; i < accessor.sparse->count; ++i) {
         const double element = component(&layout.sparseIndices[i * indexSize], indexType);
+        if (element <= last)
+            oddAccessors_.insert(fmt::format("accessors[{}].sparse.indices do not ascend", index));
+        last = element;
         if (!(element < double(accessor.count))) {
             throw InputError(
                 file(), fmt::format("accessors[{}].sparse.indices", index),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <list>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ public:
                               std::span<const std::uint32_t> chosen) const;
     /** An accessor of unsigned integers. */
     std::vector<std::uint32_t> indices(int accessor, const std::string& place) const;
+    /** What is odd about the file and the accessors read so far. */
+    std::vector<std::string> remarks() const;
     /** Places of accessors whose components do not lie at multiples of their size, as glTF wants it. */
     std::vector<std::string> misaligned() const;
     /** Bytes of the file and of its buffers: what it may unfold to is in proportion. */
@@ -70,6 +73,7 @@ private:
     std::list<std::vector<std::byte>> owned_;          ///< of buffers that are not in the file
     std::vector<std::span<const std::byte>> buffers_;  ///< into owned_ or the file
     std::size_t bytes_ = 0;
+    mutable std::set<std::string> oddAccessors_;
 };
 
 }  // namespace helio::gltf

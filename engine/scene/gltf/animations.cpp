@@ -29,6 +29,7 @@ public:
         Animation animation;
         animation.name = from.value("name", "");
         const json& samplers = from["samplers"];
+        if (from["channels"].empty()) warn(scene_, place + " has no channels");
         memory_.take(place + ".channels", from["channels"].size() * sizeof(AnimationChannel), 0);
         animation.channels.reserve(from["channels"].size());
         for (std::size_t c = 0; c < from["channels"].size(); ++c) {
@@ -82,12 +83,19 @@ private:
         if (interpolation == "STEP") channel.interpolation = Interpolation::Step;
         if (interpolation == "CUBICSPLINE") channel.interpolation = Interpolation::CubicSpline;
         channel.times = numbers(int(sampler["input"].get<double>()), 1, place + ".input");
+        bool isTwice = false;
         for (std::size_t i = 1; i < channel.times.size(); ++i) {
-            if (channel.times[i] >= channel.times[i - 1]) continue;
+            if (channel.times[i] > channel.times[i - 1]) continue;
+            if (channel.times[i] == channel.times[i - 1]) {
+                isTwice = true;
+                continue;
+            }
             throw InputError(asset_.file(), place + ".input",
                              fmt::format("time {} is {}, before the one before it", i, channel.times[i]),
                              "give times that ascend");
         }
+        if (isTwice) warn(scene_, place + ".input has a time twice");
+        if (channel.times[0] < 0) warn(scene_, place + ".input begins before 0");
         const bool isRotation = channel.path == AnimationPath::Rotation,
                    isWeights = channel.path == AnimationPath::Weights;
         channel.values = numbers(int(sampler["output"].get<double>()), isWeights ? 1 : (isRotation ? 4 : 3),

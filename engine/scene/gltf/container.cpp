@@ -55,9 +55,14 @@ void parseBinary(Container& container) {
         } else if (index == 1 && type == binChunk) {
             container.binaryChunk = content;
             container.hasBinaryChunk = true;
+        } else if (container.warnings.empty()) {
+            container.warnings.push_back(fmt::format("chunk {} of the GLB is left out", index));
         }
         at += size;
     }
+    if (at < bytes.size())
+        container.warnings.push_back(
+            fmt::format("{} bytes after the GLB's end are left out", bytes.size() - at));
 }
 
 }  // namespace

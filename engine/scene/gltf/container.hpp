@@ -16,6 +16,7 @@ struct Container {
     std::size_t size = 0;                    ///< of the file, kept when `bytes` is let go
     std::span<const std::byte> binaryChunk;  ///< of a GLB, into bytes
     bool hasBinaryChunk = false;
+    std::vector<std::string> warnings;
     nlohmann::json document;
     std::size_t documentBytes = 0;  ///< that the document takes
 };

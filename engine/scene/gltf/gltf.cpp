@@ -91,6 +91,12 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     if (!options.variant.empty()) chooseVariant(scene, options.variant);
     gltf::buildMaterials(asset, gltf::usedMaterials(scene, options.everyVariant), memory, monitor, scene);
     gltf::buildEnvironment(asset, memory, monitor, scene);
+    for (const std::string& remark : asset.remarks()) warn(scene, remark);
+    const auto isShown = [&](const Node& node) {
+        return node.mesh >= 0 && !scene.meshes[std::size_t(node.mesh)].primitives.empty();
+    };
+    if (scene.roots.empty() || std::none_of(scene.nodes.begin(), scene.nodes.end(), isShown))
+        warn(scene, "the file shows no triangles: nothing is to be seen");
     return scene;
 } catch (const std::bad_alloc&) {
     throw InputError(file, "", "does not fit in memory", "give a smaller file");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace helio::gltf {
 
@@ -38,7 +39,29 @@ int ImageLoader::use(int image) {
     return known;
 }
 
+namespace {
+
+/** What an image's first bytes say it is; empty for none of glTF's. */
+std::string_view mimeTypeOf(std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (text.starts_with("\x89PNG")) return "image/png";
+    if (text.starts_with("\xff\xd8")) return "image/jpeg";
+    return text.starts_with("RIFF") ? "image/webp" : "";
+}
+
+}  // namespace
+
 void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+        if (known_[i] < 0) continue;
+        const nlohmann::json& json = asset_.document()["images"][i];
+        const std::string said = json.value("mimeType", "");
+        const std::string_view type = mimeTypeOf(sources_[std::size_t(known_[i])].bytes);
+        if (!said.empty() && !type.empty() && said != type)
+            warn(scene, fmt::format("images[{}] is {}, whatever its mimeType", i, type));
+        if (json.contains("uri") && json.contains("bufferView"))
+            warn(scene, fmt::format("images[{}] has a uri and a bufferView; the uri counts", i));
+    }
     for (DecodingResult& image : decodeImages(sources_, monitor)) {
         if (!image.fault.empty())
             throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG, JPEG or WebP image");

@@ -202,6 +202,11 @@ private:
 Json readJson(const std::string& file, std::string_view text) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         throw InputError(file, "byte 0", "is text in UTF-16", "save it as UTF-8");
+    const std::size_t end = text.find('\0');  // the parser takes it for the end
+    if (text.find_first_not_of('\0', end) != text.npos && end != text.npos)
+        throw InputError(file, fmt::format("byte {}", end), "has a NUL within its JSON",
+                         "write the file again");
+    text = text.substr(0, end);
     checkNesting(file, text);
     DocumentBuilder builder(file, text);
     json::sax_parse(text.begin(), text.end(), &builder);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 namespace helio::gltf {
@@ -91,6 +92,7 @@ public:
         readIndices(from, primitive);
         keepUsedVertices(primitive);
         primitive.positions = attribute<glm::vec3>("POSITION", position);
+        if (kept_.empty()) checkBounds(position, primitive.positions);
         readAttributes(from, primitive);
         fixNormals(primitive);
         fixTangents(primitive);
@@ -98,6 +100,29 @@ public:
     }
 
 private:
+    /** An accessor's min and max must be those of its elements (section 3.6.2.5); what is drawn does not
+     * depend on them. */
+    void checkBounds(int accessor, const std::vector<glm::vec3>& positions) const {
+        if (asset_.accessor(accessor).isNormalized) return;
+        const json& from = asset_.document()["accessors"][std::size_t(accessor)];
+        glm::dvec3 low(positions[0]), high(low);
+        for (const glm::vec3& p : positions) {
+            low = glm::min(low, glm::dvec3(p));
+            high = glm::max(high, glm::dvec3(p));
+        }
+        const double tolerance = 1e-4 * std::max(glm::length(high - low), glm::length(high) * 1e-3);
+        const auto differs = [&](const char* member, const glm::dvec3& actual) {
+            const auto found = from.find(member);
+            if (found == from.end()) return false;
+            return found->size() != 3 ||
+                   glm::length(vectorOr(from, member, glm::dvec3(0)) - actual) > tolerance;
+        };
+        for (const auto& [member, actual] : {std::pair{"min", low}, std::pair{"max", high}}) {
+            if (differs(member, actual))
+                warn(scene_, fmt::format("accessors[{}].{} is not that of its elements", accessor, member));
+        }
+    }
+
     /** Primitives often share the vertices of a whole file and use a few each: where a primitive uses fewer
      * than half of them, only those are kept, in their order. */
     void keepUsedVertices(Primitive& primitive) {
@@ -122,6 +147,10 @@ private:
             throw InputError(asset_.file(), place,
                              fmt::format("has {} elements, POSITION {}", asset_.count(accessor), size_),
                              "give every attribute one element per vertex");
+        }
+        if (asset_.accessor(accessor).component == Component::UnsignedInt) {
+            throw InputError(asset_.file(), place, fmt::format("accessor {} has the wrong type", accessor),
+                             "give floats, or integers of at most 16 bits");
         }
         asset_.check(accessor);
         const std::size_t count = kept_.empty() ? size_ : kept_.size();
@@ -161,6 +190,12 @@ private:
             const auto found = attributes.find(name);
             if (found == attributes.end()) break;
             primitive.texcoords.push_back(attribute<glm::vec2>(name, found->get<int>()));
+        }
+        for (const auto& [name, value] : attributes.items()) {
+            int set = 0;
+            const bool isTexcoord = std::sscanf(name.c_str(), "TEXCOORD_%d", &set) == 1;
+            if (isTexcoord && std::size_t(set) >= primitive.texcoords.size())
+                skip(scene_, "attribute " + name.substr(0, 40), "a set before it is missing");
         }
         const bool hasSkins = asset_.document().contains("skins");
         for (int set = 0; hasSkins && readInfluences(attributes, set, primitive); ++set) {

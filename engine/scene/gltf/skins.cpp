@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace helio::gltf {
 namespace {
@@ -66,6 +67,8 @@ void buildSkins(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
         skin.joints.reserve(from["joints"].size());
         skin.name = from.value("name", "");
         for (const json& joint : from["joints"]) skin.joints.push_back(joint.get<int>());
+        if (std::set<int>(skin.joints.begin(), skin.joints.end()).size() < skin.joints.size())
+            warn(scene, fmt::format("skins[{}].joints names a node twice", i));
         if (from.contains("inverseBindMatrices")) {
             skin.inverseBindMatrices =
                 matrices(asset, from["inverseBindMatrices"].get<int>(), skin.joints.size(),

@@ -73,6 +73,7 @@ public:
                 for (std::uint64_t i = 0; i < element.count; ++i) skipElement(element, i);
             }
         }
+        if (values_.hasMore()) warn(scene_, "what follows the last element is left out");
         finish();
         return std::move(scene_);
     }

@@ -88,13 +88,17 @@ double PlyValues::next(PlyType type) {
     }
 }
 
-double PlyValues::nextWord() {
+bool PlyValues::hasMore() {
     while (true) {
         fill(longestWord);
         while (place_ < buffer_.size() && isSpace(buffer_[place_])) ++place_;
-        if (place_ < buffer_.size()) break;
-        if (offset_ == source_.size()) refuse("the file ends here", "write it again; it may be cut off");
+        if (place_ < buffer_.size()) return true;
+        if (offset_ == source_.size()) return false;
     }
+}
+
+double PlyValues::nextWord() {
+    if (!hasMore()) refuse("the file ends here", "write it again; it may be cut off");
     fill(longestWord);
     std::size_t end = place_;
     while (end < buffer_.size() && end - place_ < longestWord && !isSpace(buffer_[end])) ++end;

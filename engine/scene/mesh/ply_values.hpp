@@ -29,6 +29,8 @@ public:
         return count * (isText_ ? 2 : double(sizeOf(type))) - (isText_ ? 1 : 0);
     }
     double fraction() const;
+    /** Whether there is more than spaces. */
+    bool hasMore();
     [[noreturn]] void refuse(const std::string& fault, const std::string& remedy) const;
 
 private:

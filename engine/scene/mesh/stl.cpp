@@ -43,7 +43,7 @@ bool isBinary(const ByteSource& source) {
         std::memcpy(&facets, &start[headerSize - 4], 4);
         if (source.size() == headerSize + facetSize * std::uint64_t(facets)) return true;
     }
-    std::string_view text(start.data(), length);
+    std::string_view text = withoutMark({start.data(), length});
     const bool isText = std::none_of(text.begin(), text.end(), [](unsigned char c) {
         return c == 0x7f || (c < ' ' && (c < '\t' || c > '\r'));
     });
@@ -122,7 +122,7 @@ struct FacetBlock {
 
 FacetBlock parseFacets(std::string_view text) {
     FacetBlock block;
-    Lines lines(text);
+    Lines lines(withoutMark(text));
     std::string_view line;
     bool isInFacet = false;
     std::size_t cornersBefore = 0;
