@@ -74,6 +74,14 @@ def glb_headers():
                             ("first-is-binary", 16, 0x004E4942), ("binary-huge", 20 + json_size, 0xfffffff0),
                             ("binary-0", 20 + json_size, 0), ("binary-is-other", 24 + json_size, 0x20202020)):
         case(name, whole[:at] + struct.pack("<I", value) + whole[at + 4:], "glb")
+    json_and_binary, binary = whole[12:], whole[20 + json_size:]
+    def sized(name, content):
+        case(name, whole[:8] + struct.pack("<I", 12 + len(content)) + content, "glb")
+    sized("two-binary-chunks", json_and_binary + binary)
+    sized("chunk-of-nothing", json_and_binary + b"\0" * 64)
+    sized("binary-first", binary + json_and_binary[:8 + json_size])
+    sized("other-chunk-second", json_and_binary[:8 + json_size] + struct.pack("<II", 4, 0x12345678) + b"abcd" + binary)
+    case("more-after-the-end", whole + b"garbage" * 10, "glb")
     case("deep", whole[:12] + struct.pack("<I", 200000) + b"JSON" + b"[" * 200000, "glb")
 
 
@@ -99,6 +107,9 @@ def gltf_text_faults():
     case("not-utf8", text.replace(b"good_files.py", b"\xff\xfe\xc0"), "gltf")
     case("overlong-utf8", text.replace(b"good_files.py", b"\xc0\xaf"), "gltf")
     case("utf16", text.decode().encode("utf-16"), "gltf")
+    case("utf16-without-mark", text.decode().encode("utf-16-le"), "gltf")
+    case("nul", text[:50] + b"\0" + text[50:], "gltf")
+    case("nul-and-more", text + b"\0garbage", "gltf")
     case("trailing-comma", text[:-1] + b",}", "gltf")
     case("two-documents", text + text, "gltf")
     case("nan-token", text.replace(b'"yfov":0.8', b'"yfov":NaN'), "gltf")
@@ -139,6 +150,11 @@ def gltf_accessors():
     gltf_at("type-of-positions", ["accessors", position, "type"], "VEC2")
     gltf_at("type-unknown", ["accessors", position, "type"], "VEC5")
     gltf_at("component-unknown", ["accessors", position, "componentType"], 5124)
+    for key in ("min", "max"):
+        gltf_at(key + "-lies", ["accessors", position, key], [5, 5, 5])
+        gltf_at(key + "-long", ["accessors", position, key], [0] * 17)
+    gltf_at("positions-of-32-bits", ["accessors", position, "componentType"], 5125)
+    gltf_at("texcoord-gap", ["meshes", 0, "primitives", 0, "attributes", "TEXCOORD_5"], accessor_of("TEXCOORD_0"))
     gltf_at("float-indices", ["accessors", indices, "componentType"], 5126)
     gltf_at("signed-indices", ["accessors", indices, "componentType"], 5122)
     gltf("index-past-vertices", data=data_with(indices, [0, 1, 9, 0, 2, 3], "H"))
@@ -156,6 +172,10 @@ def gltf_accessors():
                               ("type", ["indices", "componentType"], 5126)):
         gltf_at("sparse-" + name, ["accessors", sparse, "sparse"] + path, value)
     where = DOCUMENT["bufferViews"][DOCUMENT["accessors"][sparse]["sparse"]["indices"]["bufferView"]]["byteOffset"]
+    sparse_count = DOCUMENT["accessors"][sparse]["sparse"]["count"]
+    gltf("sparse-index-twice", data=DATA[:where] + b"\1\0" * sparse_count + DATA[where + 2 * sparse_count:])
+    values = DOCUMENT["accessors"][sparse]["sparse"]["values"]["bufferView"]
+    gltf_at("sparse-stride", ["bufferViews", values, "byteStride"], 16)
     gltf("sparse-index-past", data=DATA[:where] + b"\xff\xff" + DATA[where + 2:])
     def without_data(document):
         del document["accessors"][position]["bufferView"]
@@ -186,6 +206,8 @@ def gltf_numbers():
     gltf("inverse-bind-zero", data=data_with(skin, [0.0] * 32))
     times = DOCUMENT["animations"][0]["samplers"][0]["input"]
     gltf("times-nan", data=data_with(times, [nan]))
+    gltf("times-twice", data=data_with(times, [1, 1]))
+    gltf("times-negative", data=data_with(times, [-1, 0]))
     gltf("times-descending", data=data_with(times, [1, 0]))
 
 
@@ -207,6 +229,8 @@ def gltf_nodes():
     gltf_at("scene-root-twice", ["scenes", 0, "nodes"], [0, 0])
     gltf_at("scene-root-has-parent", ["scenes", 0, "nodes"], [1])
     gltf_at("joint-missing", ["skins", 0, "joints"], [99])
+    gltf_at("joint-twice", ["skins", 0, "joints"], DOCUMENT["skins"][0]["joints"][:1] * 2)
+    gltf_at("scene-without-nodes", ["scenes", 0], {})
     gltf_at("joints-none", ["skins", 0, "joints"], [])
     gltf_at("animation-node-missing", ["animations", 0, "channels", 0, "target", "node"], 99)
     gltf_at("animation-sampler-missing", ["animations", 0, "channels", 0, "sampler"], 9)
@@ -292,6 +316,12 @@ def gltf_files():
                 "jpeg-magic": b"\xff\xd8\xff", "png-magic": b"\x89PNG\r\n\x1a\n"}
     for name, content in pictures.items():
         gltf("picture-" + name, image("picture.png"), picture__png=content)
+    def typed(document):
+        document["images"][0] = {"uri": "picture.png", "mimeType": "image/jpeg"}
+    gltf("picture-of-other-type", typed, picture__png=whole)
+    def twofold(document):
+        document["images"][0] = {"uri": "picture.png", "bufferView": 0}
+    gltf("picture-twofold", twofold, picture__png=whole)
     gltf_at("image-view-missing", ["images", 0, "bufferView"], 99)
     gltf_at("image-nothing", ["images", 0], {})
     gltf_at("texture-source-missing", ["textures", 0, "source"], 99)
@@ -431,6 +461,7 @@ def ply_files():
     case("long-header", b"ply\nformat ascii 1.0\n" + b"comment x\n" * 200000, "ply")
     case("long-number", text.replace(b"\n1 0 0 ", b"\n1" + b"0" * 100000 + b" 0 0 ", 1), "ply")
     case("not-utf8", text.replace(b"comment", b"\xff\xfe"), "ply")
+    case("more-after-the-end", good.ply("binary_big_endian") + b"junk" * 10, "ply", image__png=good.png())
     case("points-only", text[:text.index(b"element face")] + b"end_header\n" + text[header_end:], "ply")
     case("zero-area", text.replace(b"3 0 1 2", b"3 0 0 0"), "ply", image__png=good.png())
 
