@@ -92,9 +92,10 @@ public:
                 return tooLarge(spec_, encoded_);
             stored.resize(size * channels());
             const auto type = OIIO::BaseTypeFromC<T>::value;
-            const bool isRead = isTiled ? input_.read_image(0, 0, 0, -1, type, stored.data())
-                                        : input_.read_scanlines(0, 0, y, y + rows, 0, 0, spec_.nchannels,
-                                                                type, stored.data());
+            const bool isRead = isTiled
+                                    ? input_.read_image(0, 0, 0, -1, type, stored.data())
+                                    : input_.read_scanlines(0, 0, spec_.y + y, spec_.y + y + rows, spec_.z, 0,
+                                                            spec_.nchannels, type, stored.data());
             if (!isRead) return oneLine(input_.geterror());
             spread.resize(size * 4);
             spreadToRgba(stored, channels(), opaque_, spread.data());

@@ -41,6 +41,7 @@ public:
             // What comes next goes by the error at the last end.
             if (reached >= underWay && reached > 0 && judged(reached)) return reached;
             if (!checkpoint->shares.empty()) allocation_.emplace(checkpoint->shares, pilot_);
+            if (reached >= underWay) allocate(reached);
         }
         for (;;) {
             std::uint32_t end = underWay > reached ? underWay : nextEnd(reached);

@@ -139,7 +139,9 @@ void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     const RenderOptions& options = job.options;
     if (!job.notify({.stage = "load"})) return;
     View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
-    if (view.camera.exposure) job.result.exposure = exposureStops(*view.camera.exposure);
+    // What ambient occlusion shows is no luminance.
+    if (view.camera.exposure && options.integrator != Integrator::AmbientOcclusion)
+        job.result.exposure = exposureStops(*view.camera.exposure);
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
     warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;

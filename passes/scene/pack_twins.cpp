@@ -12,14 +12,21 @@
 namespace helio::pack {
 namespace {
 
+/** Corners with the smallest first, in their order around the triangle: twins that face alike are equal. */
 using Corners = std::array<glm::vec3, 3>;
 
-Corners sortedCorners(const glm::vec3* corners) {
-    Corners sorted = {corners[0], corners[1], corners[2]};
-    std::sort(sorted.begin(), sorted.end(), [](const glm::vec3& a, const glm::vec3& b) {
-        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-    });
-    return sorted;
+Corners canonical(const glm::vec3* corners) {
+    Corners result = {corners[0], corners[1], corners[2]};
+    const auto smallest =
+        std::min_element(result.begin(), result.end(), [](const glm::vec3& a, const glm::vec3& b) {
+            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+        });
+    std::rotate(result.begin(), smallest, result.end());
+    return result;
+}
+
+Corners turned(const Corners& corners) {
+    return {corners[0], corners[2], corners[1]};
 }
 
 /** Of the corners in any order: MurmurHash3's finaliser over each, summed. */
@@ -39,7 +46,8 @@ std::uint64_t hash(const glm::vec3* corners) {
 
 }  // namespace
 
-void collapseTwins(const Scene& scene, std::span<const Surface> surfaces, std::vector<glm::vec3>& positions) {
+std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces, bool fromBothSides,
+                          std::vector<glm::vec3>& positions) {
     constexpr std::uint64_t kIndexBits = (1u << 24) - 1;  // geometry() refuses more triangles
     std::vector<std::uint64_t> keys(surfaces.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), 4096), [&](const auto& range) {
@@ -52,20 +60,35 @@ void collapseTwins(const Scene& scene, std::span<const Surface> surfaces, std::v
         const std::uint32_t material = surfaces[g].material;
         return material >= scene.materials.size() || scene.materials[material].alphaMode == AlphaMode::Opaque;
     };
+    const auto emits = [&](std::size_t g) {
+        const std::uint32_t material = surfaces[g].material;
+        return material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f);
+    };
+    struct Covering {
+        Corners corners;
+        bool fromBothSides;
+    };
+    std::size_t collapsed = 0;
     for (std::size_t first = 0; first < keys.size();) {
         std::size_t end = first + 1;
         while (end < keys.size() && (keys[end] ^ keys[first]) <= kIndexBits) ++end;
-        std::vector<Corners> covering;  // of a run of equal hashes, in the order of g
+        std::vector<Covering> covering;  // of a run of equal hashes, in the order of g
         for (std::size_t i = first; end - first > 1 && i < end; ++i) {
             const std::size_t g = keys[i] & kIndexBits;
-            const Corners corners = sortedCorners(&positions[g * 3]);
-            if (std::find(covering.begin(), covering.end(), corners) != covering.end())
+            const Corners corners = canonical(&positions[g * 3]), other = turned(corners);
+            const bool isCovered = std::any_of(covering.begin(), covering.end(), [&](const Covering& c) {
+                return c.corners == corners || (c.fromBothSides && !emits(g) && c.corners == other);
+            });
+            if (isCovered) {
                 positions[g * 3 + 1] = positions[g * 3 + 2] = positions[g * 3];
-            else if (isOpaque(g))
-                covering.push_back(corners);
+                ++collapsed;
+            } else if (isOpaque(g)) {
+                covering.push_back({corners, fromBothSides && !emits(g)});
+            }
         }
         first = end;
     }
+    return collapsed;
 }
 
 }  // namespace helio::pack

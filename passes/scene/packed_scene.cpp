@@ -6,6 +6,8 @@
 
 #include <heliograph/error.hpp>
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstring>
 #include <numeric>
@@ -146,7 +148,11 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     PackedScene packed;
     std::vector<pack::Surface> surfaces;
     std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
-    pack::collapseTwins(scene, surfaces, positions);
+    const std::size_t twins = pack::collapseTwins(scene, surfaces, options.tree, positions);
+    if (twins > 0)
+        packed.warnings.push_back(fmt::format(
+            "{} triangles lie exactly on opaque ones before them and are left out; delete the doubles",
+            twins));
 
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;

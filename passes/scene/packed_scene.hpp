@@ -88,8 +88,8 @@ struct PackedScene {
     /** kMaterialTexels each; the last is glTF's default material. Then the tables of albedos, where needed.
      */
     std::vector<glm::vec4> materials;
-    std::uint32_t albedoTables = 0;      ///< first of their texels
-    std::vector<glm::vec4> lights;       ///< kLightTexels each
+    std::uint32_t albedoTables = 0;  ///< first of their texels
+    std::vector<glm::vec4> lights;   ///< kLightTexels each
     /** Chance by power of every light that is a surface: the first rows of `lights`. Stays on the host. */
     std::vector<float> surfaceLightChances;
     std::vector<glm::uvec4> textures;    ///< offset, width, height, flags
@@ -163,10 +163,12 @@ struct Surface {
 /** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
 std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
                                 std::vector<Surface>& surfaces);
-/** Triangles that lie exactly on an opaque one of lower g become points, which nothing meets: it covers them
- * from both sides, by the rule that the lower index wins a tie. Else rounding would let the one shadow the
- * other, and its light would count twice. */
-void collapseTwins(const Scene& scene, std::span<const Surface> surfaces, std::vector<glm::vec3>& positions);
+/** Triangles that lie exactly on an opaque one of lower g and face as it does become points, which nothing
+ * meets: the lower index wins a tie. Else rounding would let the one shadow the other, and its light would
+ * count twice. `fromBothSides`: also those that face the other way, where neither emits; for rays, which meet
+ * back faces. Returns how many. */
+std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces, bool fromBothSides,
+                          std::vector<glm::vec3>& positions);
 /** Materials and textures that some instance uses. */
 void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed);
 /** The light table: emissive triangles (pairs that make a parallelogram as one) and punctual lights, chosen

@@ -278,7 +278,7 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
         if (seesThrough() && shadows_.needed())
             result.emplace_back("alpha in shadows",
                                 "shadow maps take every surface as opaque; the path pipeline does not");
-        if (seesThrough() && info.lightCount > surfaceLights_ + kLightsPerPass)
+        if (seesThrough() && info.lightCount - (lightSamples_ > 0 ? surfaceLights_ : 0) > kLightsPerPass)
             result.emplace_back("lights", fmt::format("layers take the first {} lights", kLightsPerPass));
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");

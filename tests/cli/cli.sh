@@ -43,6 +43,13 @@ interrupt_at() {
     kill -INT $child 2>/dev/null
     wait $child
 }
+# listens PID: whether the process catches SIGINT. Starts no process itself: it must be quick.
+listens() {
+    local key value
+    while read -r key value; do
+        if [ "$key" = SigCgt: ]; then [[ $value == *[2367abef] ]]; return; fi
+    done </proc/$1/status
+} 2>/dev/null
 render() { "$program" render sample:cornell --size 64x48 --spp 4 --quiet "$@"; }
 
 expect 'help' 0 'render' "$program" --help
@@ -184,7 +191,7 @@ for command in info render; do
     child=$!
     # The moment the program listens: sooner the signal meets a shell's background job, which takes no notice of it;
     # later a fast machine has loaded the file.
-    until [ /proc/$child/exe -ef "$program" ] && grep -q '^SigCgt:.*[2367abef]$' /proc/$child/status 2>/dev/null; do
+    until [ /proc/$child/exe -ef "$program" ] && listens $child; do
         kill -0 $child 2>/dev/null || break
     done
     kill -INT $child 2>/dev/null

@@ -95,9 +95,12 @@ TEST_F(GltfCameraExtras, CamerasTakeAProjectionALensAndAnExposure) {
                                                               {"equisolid", Projection::Equisolid}};
     std::vector<std::string> names;
     for (const auto& [name, projection] : projections) {
-        const Camera camera = withCamera({{"projection", name}, {"fieldOfView", 2.5}});
+        const bool isFisheye = projection == Projection::Equidistant || projection == Projection::Equisolid;
+        json look = {{"projection", name}};
+        if (isFisheye) look["fieldOfView"] = 2.5;
+        const Camera camera = withCamera(look);
         EXPECT_EQ(camera.projection, projection);
-        EXPECT_EQ(camera.fieldOfView, 2.5f);
+        EXPECT_EQ(camera.fieldOfView, isFisheye ? 2.5f : Camera{}.fieldOfView);
         EXPECT_FALSE(camera.lens || camera.exposure);
         names.push_back(name);
     }
@@ -123,7 +126,10 @@ TEST_F(GltfCameraExtras, WhatDoesNotGoTogetherIsRefused) {
     EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}}}, {"projection", "latLong"}}), InputError);
     EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}}}}, "orthographic"), InputError);
     EXPECT_THROW(withCamera({{"projection", "sphere"}}), InputError);
-    EXPECT_THROW(withCamera({{"fieldOfView", 7}}), InputError);
+    EXPECT_THROW(withCamera({{"projection", "equisolid"}, {"fieldOfView", 7}}), InputError);
+    EXPECT_THROW(withCamera({{"fieldOfView", 2}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"apertureDiameter", 1}, {"sensorHeight", 1}}}}), InputError);
+    EXPECT_THROW(withCamera({{"lens", {{"fNumber", 2}, {"bladeRotation", 1}}}}), InputError);
     EXPECT_THROW(withCamera({{"exposure", {{"iso", 0}}}}), InputError);
 }
 

@@ -52,6 +52,38 @@ Material withScattering(Scattering::Model model, float alpha) {
     return m;
 }
 
+TEST(PackScene, TrianglesInOnePlaceCountOnce) {
+    Scene scene;
+    scene.materials.resize(3);
+    scene.materials[1].alphaMode = AlphaMode::Mask;
+    scene.materials[2].emission = glm::vec3(1.0f);
+    const std::vector<glm::vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const auto left = [&](std::vector<int> materials, std::vector<std::vector<int>> orders, bool rays) {
+        std::vector<pack::Surface> surfaces;
+        std::vector<glm::vec3> positions;
+        for (std::size_t g = 0; g < materials.size(); ++g) {
+            surfaces.push_back({0, std::uint32_t(materials[g])});
+            for (const int corner : orders[g]) positions.push_back(corners[std::size_t(corner)]);
+        }
+        const std::size_t collapsed = pack::collapseTwins(scene, surfaces, rays, positions);
+        std::vector<std::size_t> whole;
+        for (std::size_t g = 0; g < materials.size(); ++g)
+            if (positions[g * 3] != positions[g * 3 + 1]) whole.push_back(g);
+        EXPECT_EQ(whole.size() + collapsed, materials.size());
+        return whole;
+    };
+    using Whole = std::vector<std::size_t>;
+    const std::vector<int> one = {0, 1, 2}, turned = {1, 2, 0}, back = {0, 2, 1};
+    EXPECT_EQ(left({0, 0, 0}, {one, turned, one}, true), Whole({0}));
+    EXPECT_EQ(left({0, 0}, {one, back}, true), Whole({0}));
+    EXPECT_EQ(left({0, 0}, {one, back}, false), Whole({0, 1})) << "either may be culled";
+    EXPECT_EQ(left({1, 0, 0}, {one, one, one}, true), Whole({0, 1})) << "what lies behind a mask shows";
+    EXPECT_EQ(left({0, 1}, {one, one}, true), Whole({0}));
+    EXPECT_EQ(left({2, 2}, {one, one}, true), Whole({0}));
+    EXPECT_EQ(left({2, 2}, {one, back}, true), Whole({0, 1})) << "each lights its own side";
+    EXPECT_EQ(left({0, 2}, {one, back}, true), Whole({0, 1}));
+}
+
 TEST(PackScene, LobesAreKnownByTheirMaterials) {
     using Model = Scattering::Model;
     Material diffuse, black, polished, brushed, glass, halfGlass, unlit;

@@ -92,11 +92,15 @@ ThinLens lensOf(const std::string& file, int index, const Camera& camera, const 
         to = thinLens(camera, from["fNumber"].get<double>(), double(to.focusDistance),
                       from.value("sensorHeight", 0.024));
     } else {
+        if (from.contains("sensorHeight"))
+            refuseCamera(file, index, "lens/sensorHeight", "belongs to an fNumber", "leave it out");
         to.apertureDiameter = from["apertureDiameter"].get<float>();
     }
     to.blades = from.value("blades", to.blades);
     if (to.blades == 1 || to.blades == 2)
         refuseCamera(file, index, "lens/blades", fmt::format("is {}", to.blades), "give 0, or 3 to 64");
+    if (to.blades == 0 && from.contains("bladeRotation"))
+        refuseCamera(file, index, "lens/bladeRotation", "belongs to an aperture of blades", "leave it out");
     to.bladeRotation = from.value("bladeRotation", to.bladeRotation);
     return to;
 }
@@ -154,6 +158,9 @@ void readCamera(const std::string& file, const json& object, int index, Camera& 
     for (const auto& [name, projection] : projections) {
         if (own->value("projection", "plane") == name) camera.projection = projection;
     }
+    if (own->contains("fieldOfView") &&
+        (camera.projection == Projection::Plane || camera.projection == Projection::LatLong))
+        refuseCamera(file, index, "fieldOfView", "belongs to a fisheye", "leave it out");
     camera.fieldOfView = own->value("fieldOfView", camera.fieldOfView);
     if (own->contains("lens")) camera.lens = lensOf(file, index, camera, (*own)["lens"]);
     if (!own->contains("exposure")) return;
