@@ -1,5 +1,11 @@
-/** @file Stands in for the module that decodes images: a fuzzer's images are one texel. */
+/** @file
+ * Stands in for the module that decodes images (a fuzzer's images are one texel), and for what is written in
+ * the functions shared with kernels, which Clang 14 does not compile.
+ */
 #include "engine/image/backend.hpp"
+#include "engine/image/display.hpp"
+
+#include <heliograph/camera.hpp>
 
 namespace helio {
 namespace {
@@ -31,6 +37,17 @@ public:
 const ImageBackend& imageBackend() {
     static const StandIn standIn;
     return standIn;
+}
+
+ThinLens thinLens(const Camera&, double fNumber, double focusDistance, double) {
+    ThinLens lens;
+    lens.apertureDiameter = float(1 / fNumber);
+    lens.focusDistance = float(focusDistance);
+    return lens;
+}
+
+std::array<float, 3> displayed(const std::array<float, 3>& linear, const Display&) {
+    return linear;
 }
 
 }  // namespace helio
