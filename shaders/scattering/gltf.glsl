@@ -82,6 +82,11 @@ bool gltfSmooth(vec2 alpha) {
     return max(alpha.x, alpha.y) < SMOOTH_ALPHA;
 }
 
+/** What goes through rough facets is deflected by less than a smooth surface's lobe is wide: see smoothInterface(). */
+bool gltfStraight(GltfSurface s) {
+    return max(s.alpha.x, s.alpha.y) * abs(s.eta - 1.0) < 0.25 * SMOOTH_ALPHA;
+}
+
 /** Weight of the facets' lobe. */
 vec3 gltfMirrored(GltfSurface s, GltfFresnel f) {
     if (!HAS_DIELECTRIC) return f.metal;
@@ -127,7 +132,7 @@ GltfLobes gltfLobes(GltfSurface s, vec3 wo) {
     lobes.coat = coatReflectance(s, wo);
     const float rest = HAS_CLEARCOAT ? 1.0 - lobes.coat : 1.0;
     const float sum = lobes.specular + lobes.diffuse + lobes.transmission + lobes.sheen;
-    const float scale = sum > 0.0 ? rest / sum : 0.0;
+    const float scale = sum > 1e-30 ? rest / sum : 0.0;  // of denormal sums the inverse is infinite
     lobes.specular *= scale;
     lobes.diffuse *= scale;
     lobes.transmission *= scale;
@@ -180,7 +185,7 @@ ScatterValue gltfValue(GltfSurface s, vec3 wo, vec3 wi) {
         vec3 across = h;
         ScatterValue through = noScattering();
         if (s.thin) through = ggxReflection(wo, vec3(wi.xy, -wi.z), alpha, across);
-        if (!s.thin && s.eta != 1.0) through = facetTransmission(Microfacets(alpha, false), wo, wi, s.eta, across);
+        if (!s.thin && !gltfStraight(s)) through = facetTransmission(Microfacets(alpha, false), wo, wi, s.eta, across);
         const float woH = clamp(dot(wo, across), 0.0, 1.0);
         const GltfFresnel g = gltfFresnelAt(s, woH, s.thin || s.eta >= 1.0 ? woH : clamp(-dot(wi, across), 0.0, 1.0));
         const float share = (1.0 - s.metallic) * s.transmission * (1.0 - maxComponent(g.dielectric));
@@ -200,7 +205,8 @@ ScatterValue gltfValue(GltfSurface s, vec3 wo, vec3 wi) {
         value += above ? coatReflectance(s, wo) * coat.value : vec3(0.0);
         density += above ? lobes.coat * coat.density : 0.0;
     }
-    return ScatterValue(value, density);
+    // Over a denormal density the value would not be finite.
+    return density >= REAL_MIN_NORMAL ? ScatterValue(value, density) : noScattering();
 }
 
 /** A direction of the mixture. `density` 1: judge it by gltfValue; negative: a mirror with its weight; 0: light is
@@ -232,7 +238,7 @@ ScatterSample gltfSample(GltfSurface s, vec3 wo, vec3 u) {
             }
             result.weight = s.baseColor * ((1.0 - s.metallic) * s.transmission * (1.0 - maxComponent(f.dielectric)) * scale / lobes.transmission);
         }
-        const bool straight = HAS_TRANSMISSION && isTransmission && !s.thin && s.eta == 1.0;
+        const bool straight = HAS_TRANSMISSION && isTransmission && !s.thin && gltfStraight(s);
         if (isSmooth || straight) {
             if (HAS_CLEARCOAT || HAS_SHEEN) result.weight *= gltfLayers(s, wo, result.direction);
             result.density = -1.0;
