@@ -206,7 +206,7 @@ ScatterValue gltfValue(GltfSurface s, vec3 wo, vec3 wi) {
         density += above ? lobes.coat * coat.density : 0.0;
     }
     // Over a denormal density the value would not be finite.
-    return density >= REAL_MIN_NORMAL ? ScatterValue(value, density) : noScattering();
+    return ScatterValue(value, density >= REAL_MIN_NORMAL ? density : 0.0);
 }
 
 /** A direction of the mixture. `density` 1: judge it by gltfValue; negative: a mirror with its weight; 0: light is
