@@ -13,7 +13,7 @@ namespace {
 constexpr double regularizer = 0.01;  // of relMSE
 constexpr double modelError = 0.01;   // of the estimate's logarithm, for edges and textures
 /** Of the logarithm of what the denominator's choice changes. */
-constexpr double denominatorDoubt = 0.15;
+constexpr double denominatorDoubt = 0.02;
 /** Of what pixels' own terms say of the sum's variance over what their neighbours' say, where a pixel is like
  * those around it: 1 for normal errors. Measured: 0.7 to 2.9 on scenes whose errors have finite fourth
  * moments, 4.5 to 10^5 where rare bright samples decide (bench_error coverage on glass, terrain, lights500).
@@ -204,6 +204,30 @@ double stratificationGain(const FilmImages& images) {
     return measured > 0 && independent > 0 ? measured / independent : 1;
 }
 
+std::vector<float> relativeWeights(const FilmImages& images) {
+    const double gain = std::min(1.0, stratificationGain(images));
+    std::vector<float> result(images.mean.size());
+    for (std::uint32_t y = 0; y < images.height; ++y) {
+        for (std::uint32_t x = 0; x < images.width; ++x) {
+            const std::size_t pixel = std::size_t(y) * images.width + x;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double denominator = Channel(images, c, gain).truth(x, y).denominator();
+                result[4 * pixel + c] = float(finiteOr(1 / denominator, 0));
+            }
+        }
+    }
+    return result;
+}
+
+std::vector<float> relativeStandardErrors(const FilmImages& images) {
+    const std::vector<float> variance = varianceOfMean(images), weights = relativeWeights(images);
+    std::vector<float> result;
+    result.reserve(images.mean.size() / 4 * 3);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        if (i % 4 != 3) result.push_back(float(std::sqrt(finiteOr(double(variance[i]) * weights[i], 0))));
+    return result;
+}
+
 ErrorEstimate estimateError(const FilmImages& images) {
     [[maybe_unused]] const std::size_t size = std::size_t(images.width) * images.height * 4;
     assert(images.mean.size() == size && images.variance.size() == size && images.difference.size() == size);
@@ -219,7 +243,7 @@ ErrorEstimate estimateError(const FilmImages& images) {
     // quantiles are those that bench_error coverage measures.
     const double doubt = modelError + denominatorDoubt * denominator;
     result.low = result.relmse * std::exp(-std::hypot(1.8 * statistical, doubt));
-    result.high = result.relmse * std::exp(std::hypot(2.2 * statistical, doubt));
+    result.high = result.relmse * std::exp(std::hypot(2.12 * statistical, doubt));
     double fewest = HUGE_VAL;
     for (std::size_t i = 0; i < images.mean.size(); i += 4)
         fewest = std::min(fewest, double(images.mean[i + 3]));

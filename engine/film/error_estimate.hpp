@@ -33,6 +33,11 @@ struct FilmImages {
  * much. Without two halves, neighbouring pixels stand in and the result is not reliable. */
 ErrorEstimate estimateError(const FilmImages& images);
 
+/** 1 / (truth^2 + 0.01) of each pixel as estimateError() takes it: R G B and 0. */
+std::vector<float> relativeWeights(const FilmImages& images);
+/** Of each pixel, R G B: the root of its expected part in relMSE, with the same denominators. */
+std::vector<float> relativeStandardErrors(const FilmImages& images);
+
 /** The variance of the mean that the two halves measure over that of independent samples, over the whole
  * image: about 1 for independent samples, less for stratified ones. 1 where there is nothing to compare. */
 double stratificationGain(const FilmImages& images);

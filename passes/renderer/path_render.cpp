@@ -2,6 +2,7 @@
 
 #include "engine/film/sample_allocation.hpp"
 #include "engine/film/variance.hpp"
+#include "passes/denoise/denoise.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/sample_schedule.hpp"
@@ -182,6 +183,20 @@ void noteCounters(const PathCounters& counters, RenderResult& result) {
     }
 }
 
+void addDenoised(Device& device, const FilmImages& film, const FirstHits& hits, RenderJob& job) {
+    DenoiseGuides guides;
+    for (std::size_t i = 0; i < hits.depth.size(); ++i) {
+        guides.geometry.emplace_back(hits.normal[i], hits.depth[i]);
+        guides.albedo.emplace_back(hits.albedo[i], hits.instance[i] >= 0 ? 1.0f : 0.0f);
+    }
+    const Denoised denoised = denoise(device, film, guides);
+    Frame frame(film.width, film.height);
+    frame.add({"R", "G", "B"}, &denoised.picture.data()->x, 4);
+    frame.add({"strength"}, &denoised.picture.data()->x, 4, 3);
+    job.result.denoised = {frame.image(), denoised.relmse, denoised.undenoised, denoised.strength};
+    job.addTimings(denoised.timings);
+}
+
 /** What limits of time and error did not bring. */
 void warnOfLimits(const FilmImages& film, RenderJob& job) {
     RenderResult& result = job.result;
@@ -253,7 +268,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     tracer.advance(0);
     target.resolve();
     FirstHits hits;
-    if (job.options.auxiliary) hits = tracer.firstHits();
+    if (job.options.auxiliary || job.options.denoise) hits = tracer.firstHits();
     const std::vector<PassTiming> compiling = tracer.timings();
     if (!job.notify({.stage = "compile"})) return;
     Checkpointing checkpoints(device, tracer, target.film(), scene.identity, view, job);
@@ -262,7 +277,13 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     result.samples = PathLoop(tracer, target, checkpoints, job, device.info().type == "cpu").run();
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
+    if (job.options.denoise) addDenoised(device, film, hits, job);
     job.finish();
+    if (job.options.errorMap) {
+        Frame map(film.width, film.height);
+        map.add({"R", "G", "B"}, relativeStandardErrors(film).data(), 3);
+        result.errorMap = map.image();
+    }
     warnOfLimits(film, job);
 
     Frame frame(film.width, film.height);

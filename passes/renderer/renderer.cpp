@@ -58,6 +58,10 @@ void check(const RenderOptions& options) {
            "give at most 4096, or 0 for all lights");
     refuse(options.pipeline == Pipeline::Raster && options.integrator != Integrator::Path, "integrator",
            "the raster pipeline traces no paths", "leave it out");
+    refuse((options.denoise || options.errorMap) && options.pipeline == Pipeline::Raster, "denoise, errorMap",
+           "the raster pipeline has no halves of samples to go by", "leave it out");
+    refuse(options.denoise && options.samples < 2, "denoise", "one sample says nothing of its noise",
+           "take two samples per pixel or more");
     refuse(options.adaptive && options.pipeline == Pipeline::Raster, "adaptive",
            "the raster pipeline takes equal samples", "leave it out");
     refuse(options.adaptive && options.sampler == SamplerKind::SobolBlue, "adaptive",

@@ -1,7 +1,12 @@
 // The statistics as JSON, and the image's metadata.
+#include <heliograph/error.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace helio {
 
@@ -32,12 +37,19 @@ std::string RenderResult::json() const {
         {"features", features},
         {"skipped", skippedParts}};
     if (!counters.empty()) statistics["counters"] = work;
+    if (denoised) {
+        statistics["denoised"] = {{"biased", true},
+                                  {"relmse", denoised->relmse},
+                                  {"undenoised_relmse", denoised->undenoised},
+                                  {"strength", denoised->strength}};
+    }
     // Names come from files and may not be UTF-8; numbers that JSON has no text for become null.
     return statistics.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-void save(const std::filesystem::path& file, const RenderResult& result, const Display& display) {
-    ImageF image = result.image;
+namespace {
+
+void addMetadata(ImageF& image, const RenderResult& result) {
     image.metadata["scene"] = result.scene;
     image.metadata["seed"] = std::int64_t(result.seed);
     image.metadata["samples"] = std::int64_t(result.samples);
@@ -48,7 +60,57 @@ void save(const std::filesystem::path& file, const RenderResult& result, const D
     image.metadata["errorReliable"] = std::int64_t(result.error.reliable);
     image.metadata["device"] = result.device;
     image.metadata["version"] = result.version;
+}
+
+/** Linear colour of a relative error. */
+std::array<float, 3> falseColor(double relative) {
+    constexpr std::array<std::array<double, 3>, 4> colors = {
+        {{0.0, 0.0, 0.0}, {0.15, 0.02, 0.35}, {1.0, 0.35, 0.02}, {1.0, 1.0, 1.0}}};
+    const double place = std::clamp(std::log10(std::max(relative, 1e-30)) + 3, 0.0, 3.0);
+    const std::size_t below = std::min<std::size_t>(std::size_t(place), 2);
+    const double t = place - double(below);
+    std::array<float, 3> result{};
+    for (std::size_t c = 0; c < 3; ++c)
+        result[c] = float((1 - t) * colors[below][c] + t * colors[below + 1][c]);
+    return result;
+}
+
+}  // namespace
+
+void save(const std::filesystem::path& file, const RenderResult& result, const Display& display) {
+    ImageF image = result.image;
+    addMetadata(image, result);
     saveImage(file, image, {display.exposure + result.exposure, display.curve});
+}
+
+void saveDenoised(const std::filesystem::path& file, const RenderResult& result, const Display& display) {
+    if (!result.denoised)
+        throw InputError(file.string(), "", "there is no denoised image",
+                         "render with RenderOptions::denoise");
+    ImageF image = result.denoised->image;
+    addMetadata(image, result);
+    // What is told of the picture before says nothing of this one.
+    for (const char* name : {"errorLow", "errorHigh", "errorReliable"}) image.metadata.erase(name);
+    image.metadata["error"] = result.denoised->relmse;
+    image.metadata["errorBefore"] = result.denoised->undenoised;
+    image.metadata["denoised"] = std::string("biased: filtered over space");
+    saveImage(file, image, {display.exposure + result.exposure, display.curve});
+}
+
+void saveErrorMap(const std::filesystem::path& file, const RenderResult& result) {
+    ImageF image = result.errorMap;
+    if (image.data.empty())
+        throw InputError(file.string(), "", "there is no error map", "render with RenderOptions::errorMap");
+    addMetadata(image, result);
+    if (file.extension() != ".exr" && file.extension() != ".EXR") {
+        for (std::size_t i = 0; i < image.data.size(); i += 3) {
+            double square = 0;
+            for (std::size_t c = 0; c < 3; ++c) square += double(image.data[i + c]) * image.data[i + c] / 3;
+            const std::array<float, 3> color = falseColor(std::sqrt(square));
+            std::copy(color.begin(), color.end(), image.data.begin() + std::ptrdiff_t(i));
+        }
+    }
+    saveImage(file, image);
 }
 
 }  // namespace helio

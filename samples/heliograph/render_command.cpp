@@ -25,7 +25,7 @@ struct RenderArguments {
     std::vector<std::string> outputs;
     std::string size = "1280x720";
     std::string environment;
-    std::string stats, graph;
+    std::string stats, graph, errorMap;
     std::string device = "auto";
     std::string antialiasing;
     Display display;
@@ -117,6 +117,10 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
                                             ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})",
                                                           error.relmse, error.low, error.high)
                                             : fmt::format("{:.3g} (not reliable)", error.relmse));
+        if (result.denoised) {
+            printLine("denoised relMSE {:.3g}, {:.3g} before (biased; measured by halves)",
+                      result.denoised->relmse, result.denoised->undenoised);
+        }
     } else {
         printLine("error    not measured");
     }
@@ -163,8 +167,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
-         {"--time", "--max-error", "--adaptive", "--max-depth", "--filter", "--sampler", "--integrator",
-          "--lights", "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
+         {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
+          "--sampler", "--integrator", "--lights", "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -211,6 +215,11 @@ private:
     std::exception_ptr failure_;
 };
 
+/** NAME.EXT to NAME.denoised.EXT. */
+std::string denoisedName(const std::filesystem::path& file) {
+    return (file.parent_path() / (file.stem().string() + ".denoised" + file.extension().string())).string();
+}
+
 int reportNothingWritten() {
     say("interrupted before the first sample: nothing was written");
     return Interrupted;
@@ -237,6 +246,12 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         }
     }
     for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
+    if (!arguments.errorMap.empty()) checkImageOutput("--error-map", arguments.errorMap);
+    options.errorMap = !arguments.errorMap.empty();
+    if (options.denoise && options.samples < 2)
+        throw CLI::ValidationError("--denoise", "needs two samples per pixel at least");
+    if (options.denoise && arguments.outputs.empty())
+        throw CLI::ValidationError("--denoise", "has no effect without an image; name one with -o");
     checkDisplayOptions(command, arguments.outputs);
     for (const std::string& output : {arguments.stats, arguments.graph}) {
         if (!output.empty()) checkTextOutput(output);
@@ -272,6 +287,15 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     OutputWriter writer;
     for (const std::string& output : arguments.outputs) {
         writer.write(output, arguments.quiet, [&] { save(output, result, arguments.display); });
+    }
+    if (result.denoised) {
+        for (const std::string& output : arguments.outputs) {
+            const std::string file = denoisedName(output);
+            writer.write(file, arguments.quiet, [&] { saveDenoised(file, result, arguments.display); });
+        }
+    }
+    if (!arguments.errorMap.empty()) {
+        writer.write(arguments.errorMap, arguments.quiet, [&] { saveErrorMap(arguments.errorMap, result); });
     }
     if (!arguments.stats.empty()) {
         writer.write(arguments.stats, true, [&] { writeTextFile(arguments.stats, result.json() + "\n"); });
@@ -438,6 +462,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
             "Radius of punctual lights for pcss; of directional ones the tangent of their half angle")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    command->add_flag("--denoise", options.denoise,
+                      "Also write each image filtered, as NAME.denoised.EXT: smoother, and biased");
+    command->add_option(
+        "--error-map", arguments->errorMap,
+        "Image of each pixel's relative standard error: .exr as numbers, .png or .jpg in colours");
     addChoice<ToneCurve>(command, "--tonemap", arguments->display.curve,
                          {{"none", ToneCurve::None},
                           {"reinhard", ToneCurve::Reinhard},

@@ -72,7 +72,7 @@ expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
 expect 'too many samples' 2 '16777215' "$program" render sample:cornell --spp 16777216
 expect 'a path render culls nothing' 2 'raster only' render --cull back
-for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee; do
+for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee --adaptive --denoise '--error-map map.png'; do
     # shellcheck disable=SC2086
     expect "raster refuses $option" 2 "${option%% *}: is there for --pipeline path only" render --pipeline raster $option
 done

@@ -5,7 +5,7 @@
 namespace helio::test {
 
 SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, bool adaptive)
-    : scene_(std::move(scene)), adaptive_(adaptive), target_(device, size[0], size[1]) {
+    : scene_(std::move(scene)), adaptive_(adaptive), device_(device), target_(device, size[0], size[1]) {
     PathTraceOptions options;
     options.size = size;
     options.adaptive = adaptive;
@@ -13,6 +13,20 @@ SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2>
     uploaded_ = std::make_unique<DeviceScene>(device, scene_, PathTracer::packOptions(scene_, options));
     tracer_ = std::make_unique<PathTracer>(device, *uploaded_, scene_.cameras[std::size_t(placed.camera)],
                                            placed.transform, options, target_.film());
+}
+
+FilmImages SceneFilms::denoised(const FilmImages& film) {
+    if (guides_.geometry.empty()) {
+        const FirstHits hits = tracer_->firstHits();
+        for (std::size_t i = 0; i < hits.depth.size(); ++i) {
+            guides_.geometry.emplace_back(hits.normal[i], hits.depth[i]);
+            guides_.albedo.emplace_back(hits.albedo[i], hits.instance[i] >= 0 ? 1.0f : 0.0f);
+        }
+    }
+    FilmImages result{film.width, film.height, {}, {}, {}};
+    for (const glm::vec4& pixel : denoise(device_, film, guides_).picture)
+        result.mean.insert(result.mean.end(), {pixel.x, pixel.y, pixel.z, pixel.w});
+    return result;
 }
 
 void SceneFilms::trace(std::uint32_t begin, std::uint32_t end, const SampleAllocation* allocation) {

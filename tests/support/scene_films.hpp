@@ -1,6 +1,7 @@
 #pragma once
 /** @file Films of one scene under many seeds, made with one set of pipelines. */
 #include "engine/film/sample_allocation.hpp"
+#include "passes/denoise/denoise.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "passes/renderer/film_target.hpp"
 
@@ -18,6 +19,8 @@ class SceneFilms {
 public:
     SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, bool adaptive = false);
     /** A film of `samples` per pixel; on average where adaptive. */
+    /** A film's picture denoised, as a film that holds nothing but the picture. */
+    FilmImages denoised(const FilmImages& film);
     FilmImages render(std::uint32_t samples, std::uint32_t seed);
 
 private:
@@ -25,6 +28,8 @@ private:
 
     Scene scene_;
     bool adaptive_;
+    Device& device_;
+    DenoiseGuides guides_;
     FilmTarget target_;
     std::unique_ptr<DeviceScene> uploaded_;
     std::unique_ptr<PathTracer> tracer_;

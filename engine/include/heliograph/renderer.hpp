@@ -131,6 +131,10 @@ struct RenderOptions {
     /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are over 16 times as
      * many; a picture comes out the same again. 0 takes all of them. Up to 4096. */
     std::uint32_t lightSamples = 64;
+    /** Path pipeline: also a filtered picture, see RenderResult::denoised. Takes two samples per pixel at
+     * least. */
+    bool denoise = false;
+    bool errorMap = false;  ///< path pipeline: also RenderResult::errorMap
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
      * rarely, so that it takes a twentieth of the time at most), when it is cancelled and when it ends;
@@ -184,6 +188,19 @@ struct RenderResult {
     std::vector<std::string> warnings;
     /** Stops by which what is displayed is exposed: the camera's exposureStops(), 0 where it has none. */
     double exposure = 0;
+    /** The picture after an edge-preserving filter, which is biased: it blurs what it takes for noise. Where
+     * the two halves of the samples show that filtering would harm, a pixel stays as it was. */
+    struct Denoised {
+        ImageF image;  ///< R G B, and `strength`: 0 for a pixel left as it was, 1 for one that is filtered
+        /** Measured by the halves: relMSE of this image (low, since the filter's strength was chosen by the
+         * same samples), and of the one before. */
+        double relmse = 0, undenoised = 0;
+        double strength = 0;  ///< mean over the pixels
+    };
+    std::optional<Denoised> denoised;
+    /** Relative standard error of each pixel, R G B: the root of its expected part in relMSE. Empty unless
+     * asked for. */
+    ImageF errorMap;
     bool cancelled = false;
     std::string scene, device, version;
     std::uint32_t seed = 0;
@@ -225,5 +242,12 @@ private:
 /** Saves a result's image; see saveImage. The camera's exposure adds to the display's. Metadata as the
  * contract says. */
 void save(const std::filesystem::path& file, const RenderResult& result, const Display& display = {});
+/** Saves the denoised image in the same way; its metadata says `denoised`. Throws InputError where there is
+ * none. */
+void saveDenoised(const std::filesystem::path& file, const RenderResult& result, const Display& display = {});
+/** Saves the error map: as it is (.exr), or in false colours of the channels' root mean square (.png, .jpg),
+ * evenly over its logarithm: black 0.001 or less, violet 0.01, orange 0.1, white 1 or more. Throws InputError
+ * where there is none. */
+void saveErrorMap(const std::filesystem::path& file, const RenderResult& result);
 
 }  // namespace helio

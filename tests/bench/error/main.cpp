@@ -35,15 +35,15 @@ int coverage(const std::vector<std::string>& scenes, const helio::test::Coverage
 int table(const std::vector<std::string>& scenes, const helio::test::TableOptions& options) {
     helio::Device device;
     fmt::print("{}x{}, mean of {} seeds\n", options.size, options.size, options.seeds);
-    fmt::print("| scene | samples | plain | adaptive / plain |\n|---|---|---|---|\n");
+    fmt::print("| scene | samples | plain | adaptive / plain | denoised / plain |\n|---|---|---|---|---|\n");
+    const std::vector<std::uint32_t> samples = {4, 16, 64};
     for (const std::string& scene : scenes) {
-        for (const std::uint32_t samples : {16u, 64u}) {
-            const auto row =
-                helio::test::measureRow(device, helio::test::errorScene(scene), samples, options);
-            fmt::print("| {} | {} | {:.3g} | {:.3f} |\n", scene, samples, row.plain,
-                       row.adaptive / row.plain);
-            std::fflush(stdout);
+        const auto rows = helio::test::measureRows(device, helio::test::errorScene(scene), samples, options);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            fmt::print("| {} | {} | {:.3g} | {:.3f} | {:.3f} |\n", scene, samples[i], rows[i].plain,
+                       rows[i].adaptive / rows[i].plain, rows[i].denoised / rows[i].plain);
         }
+        std::fflush(stdout);
     }
     return 0;
 }
@@ -65,9 +65,11 @@ int main(int argc, char** argv) try {
     command->add_option("--judge", options.judge, "Folder of kept films to judge, in place of rendering");
     helio::test::TableOptions tableOptions;
     std::vector<std::string> tableScenes = {"cornell", "plates", "glass", "lights500", "room", "spheres"};
-    CLI::App* tableCommand = app.add_subcommand("table", "relMSE of plain and adaptive sampling");
+    CLI::App* tableCommand = app.add_subcommand("table", "relMSE plain, adaptive and denoised");
     tableCommand->add_option("scenes", tableScenes, "Samples, room or spheres")->capture_default_str();
     tableCommand->add_option("--seeds", tableOptions.seeds)->capture_default_str();
+    tableCommand->add_option("--reference", tableOptions.reference, "Samples of the truth")
+        ->capture_default_str();
     tableCommand->add_option("--size", tableOptions.size)->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     if (tableCommand->parsed()) return table(tableScenes, tableOptions);

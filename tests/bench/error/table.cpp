@@ -4,25 +4,30 @@
 
 namespace helio::test {
 
-TableRow measureRow(Device& device, const Scene& scene, std::uint32_t samples, const TableOptions& options) {
+std::vector<TableRow> measureRows(Device& device, const Scene& scene,
+                                  const std::vector<std::uint32_t>& samples, const TableOptions& options) {
     const std::array size = {options.size, options.size};
     SceneFilms plain(device, scene, size), adaptive(device, scene, size, true);
-    std::vector<FilmImages> plainFilms, adaptiveFilms;
     MeanImage mean;
-    for (std::uint32_t seed = 1; seed <= options.seeds; ++seed) {
-        plainFilms.push_back(plain.render(samples, seed));
-        mean.add(plainFilms.back());
-        // Other numbers: the truth must not hold this picture's errors.
-        adaptiveFilms.push_back(adaptive.render(samples, seed + 100000));
-    }
+    const FilmImages reference = plain.render(options.reference, 1000000);
+    mean.add(reference);
     const std::vector<double> truth = mean.mean();
-    const double n = options.seeds;
-    TableRow row;
-    for (const FilmImages& film : plainFilms) row.plain += relativeError(film, truth) / n;
-    for (const FilmImages& film : adaptiveFilms) row.adaptive += relativeError(film, truth) / n;
-    row.plain /= 1 - 1 / n;
-    row.adaptive -= row.plain / n;
-    return row;
+    const double residual = estimateError(reference).relmse;
+    std::vector<TableRow> rows;
+    for (const std::uint32_t count : samples) {
+        TableRow row;
+        for (std::uint32_t seed = 1; seed <= options.seeds; ++seed) {
+            const FilmImages film = plain.render(count, seed);
+            row.plain += relativeError(film, truth) / options.seeds;
+            row.denoised += relativeError(plain.denoised(film), truth) / options.seeds;
+            row.adaptive += relativeError(adaptive.render(count, seed), truth) / options.seeds;
+        }
+        row.plain -= residual;
+        row.denoised -= residual;
+        row.adaptive -= residual;
+        rows.push_back(row);
+    }
+    return rows;
 }
 
 }  // namespace helio::test

@@ -3,6 +3,7 @@
 #include <heliograph/scene.hpp>
 
 #include <cstdint>
+#include <vector>
 
 namespace helio {
 class Device;
@@ -11,16 +12,17 @@ class Device;
 namespace helio::test {
 
 struct TableOptions {
-    std::uint32_t seeds = 32, size = 64;
+    std::uint32_t seeds = 16, size = 64, reference = 4096;
 };
 
 /** Mean relMSE over seeds. */
 struct TableRow {
-    double plain = 0, adaptive = 0;
+    double plain = 0, adaptive = 0, denoised = 0;
 };
 
-/** Renders plainly and otherwise under every seed. The truth is the mean of the plain pictures, whose own
- * error is corrected for: it has 1 / seeds of the variance of one. */
-TableRow measureRow(Device& device, const Scene& scene, std::uint32_t samples, const TableOptions& options);
+/** Renders plainly and otherwise under every seed, for each number of samples. The truth is a plain picture
+ * of `reference` samples, whose own error is subtracted. */
+std::vector<TableRow> measureRows(Device& device, const Scene& scene,
+                                  const std::vector<std::uint32_t>& samples, const TableOptions& options);
 
 }  // namespace helio::test

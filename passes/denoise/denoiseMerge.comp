@@ -1,0 +1,31 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The filtered halves' mean, and what it brings: see denoise.hpp.
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 0, rgba32f) readonly uniform image2D uA;
+layout(binding = 1, rgba32f) readonly uniform image2D uB;
+layout(binding = 2) uniform samplerBuffer uMean;        // R G B, samples
+layout(binding = 3) uniform samplerBuffer uDifference;  // R G B, 1 where both halves have samples
+layout(binding = 6) uniform samplerBuffer uWeights;     // of squares in relMSE
+layout(binding = 4, rgba32f) writeonly uniform image2D uMerged;
+layout(binding = 5, rgba32f) writeonly uniform image2D uScores;  // d^2 - D d, (F - M)^2, d^2, each over brightness
+
+layout(push_constant) uniform Parameters {
+    ivec2 size;
+} parameters;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, parameters.size))) return;
+    int index = pixel.y * parameters.size.x + pixel.x;
+    vec3 a = imageLoad(uA, pixel).xyz, b = imageLoad(uB, pixel).xyz, mean = texelFetch(uMean, index).xyz;
+    vec4 difference = texelFetch(uDifference, index);
+    vec3 d = difference.xyz, merged = 0.5 * (a + b);
+    vec3 filteredDifference = 0.5 * (a - b), change = merged - mean;
+    vec3 weight = texelFetch(uWeights, index).xyz / 3.0;
+    vec4 scores = vec4(dot(weight, d * (d - filteredDifference)), dot(weight, change * change), dot(weight, d * d), 0.0);
+    bool usable = difference.w > 0.0 && all(lessThan(abs(scores), vec4(1e30))) && all(lessThan(abs(merged), vec3(1e30)));
+    imageStore(uMerged, pixel, vec4(usable ? merged : mean, 0.0));
+    imageStore(uScores, pixel, usable ? scores : vec4(0.0));
+}

@@ -1,0 +1,169 @@
+// The denoiser on pictures whose truth is known, and on renders.
+#include "passes/denoise/denoise.hpp"
+
+#include "tests/support/device.hpp"
+
+#include <heliograph/renderer.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace helio::test {
+namespace {
+
+using Truth = std::function<double(std::uint32_t x, std::uint32_t y)>;
+
+/** A film of 16 samples per pixel of normal noise, and the guides of a wall that fills the picture. */
+struct Picture {
+    FilmImages film;
+    DenoiseGuides guides;
+    std::vector<double> truth;
+
+    Picture(std::uint32_t size, const Truth& brightness, double noise) {
+        const std::size_t floats = std::size_t(size) * size * 4;
+        film = {size, size, std::vector<float>(floats), std::vector<float>(floats),
+                std::vector<float>(floats)};
+        std::mt19937 random(7);
+        std::normal_distribution<> normal;
+        for (std::size_t pixel = 0; pixel < floats / 4; ++pixel) {
+            truth.push_back(brightness(std::uint32_t(pixel % size), std::uint32_t(pixel / size)));
+            const double a = noise * normal(random) / std::sqrt(8.0),
+                         b = noise * normal(random) / std::sqrt(8.0);
+            for (std::size_t c = 0; c < 3; ++c) {
+                film.mean[4 * pixel + c] = float(truth.back() + 0.5 * (a + b));
+                film.difference[4 * pixel + c] = float(0.5 * (a - b));
+                film.variance[4 * pixel + c] = float(noise * noise / 16);
+            }
+            film.mean[4 * pixel + 3] = 16;
+            film.difference[4 * pixel + 3] = 1;
+            guides.geometry.emplace_back(0, 0, 1, 5);
+            guides.albedo.emplace_back(0.5f, 0.5f, 0.5f, 1);
+        }
+    }
+    double error(const std::function<double(std::size_t)>& value) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            const double e = value(i) - truth[i];
+            sum += e * e / (truth[i] * truth[i] + 0.01) / double(truth.size());
+        }
+        return sum;
+    }
+    double errorBefore() const {
+        return error([&](std::size_t i) { return double(film.mean[4 * i]); });
+    }
+    double errorOf(const Denoised& denoised) const {
+        return error([&](std::size_t i) { return double(denoised.picture[i].x); });
+    }
+};
+
+TEST(Denoise, AConstantStaysToTheLastBit) {
+    const Picture picture(
+        37, [](auto, auto) { return 0.1; }, 0);
+    const Denoised denoised = denoise(device(), picture.film, picture.guides);
+    for (const glm::vec4& pixel : denoised.picture) EXPECT_EQ(pixel.x, float(0.1));
+    EXPECT_EQ(denoised.relmse, 0);
+}
+
+TEST(Denoise, NoiseFallsTheMeanStaysAndTheErrorIsMeasured) {
+    const Picture picture(
+        64, [](std::uint32_t x, std::uint32_t) { return 0.5 + 0.005 * x; }, 0.4);
+    const Denoised denoised = denoise(device(), picture.film, picture.guides);
+    EXPECT_LT(picture.errorOf(denoised), 0.2 * picture.errorBefore());
+    double mean = 0, before = 0;
+    for (std::size_t i = 0; i < picture.truth.size(); ++i) {
+        mean += denoised.picture[i].x;
+        before += picture.film.mean[4 * i];
+    }
+    EXPECT_NEAR(mean / before, 1, 2e-3);
+    EXPECT_NEAR(denoised.undenoised / picture.errorBefore(), 1, 0.1);
+    // Of about 4096 pixels' differences, each of the variance before.
+    EXPECT_NEAR(denoised.relmse, picture.errorOf(denoised), 0.1 * picture.errorBefore());
+}
+
+TEST(Denoise, AnEdgeIsKept) {
+    const Picture picture(
+        64, [](std::uint32_t x, std::uint32_t) { return x < 32 ? 1.0 : 0.2; }, 0.2);
+    const Denoised denoised = denoise(device(), picture.film, picture.guides);
+    double left = 0, right = 0;
+    for (std::size_t y = 0; y < 64; ++y) {
+        left += denoised.picture[64 * y + 31].x / 64;
+        right += denoised.picture[64 * y + 32].x / 64;
+    }
+    EXPECT_NEAR(left, 1.0, 0.02);
+    EXPECT_NEAR(right, 0.2, 0.02);
+    EXPECT_LT(picture.errorOf(denoised), 0.3 * picture.errorBefore());
+}
+
+TEST(Denoise, LeavesWhatItWouldHarm) {
+    // A texture that no guide shows, its contrast below the noise of a half: the filter takes it for noise.
+    const Picture picture(
+        64, [](std::uint32_t x, std::uint32_t y) { return (x + y) % 2 == 0 ? 1.3 : 0.7; }, 0.8);
+    const Denoised denoised = denoise(device(), picture.film, picture.guides);
+    EXPECT_LT(picture.errorOf(denoised), 1.02 * picture.errorBefore());
+    const Picture fine(
+        64, [](std::uint32_t x, std::uint32_t y) { return (x + y) % 2 == 0 ? 1.1 : 0.9; }, 0.1);
+    EXPECT_LT(fine.errorOf(denoise(device(), fine.film, fine.guides)), 1.02 * fine.errorBefore());
+}
+
+TEST(Denoise, WhatIsNotFiniteDoesNotSpread) {
+    Picture picture(
+        32, [](auto, auto) { return 0.5; }, 0.2);
+    picture.film.mean[4 * 100] = NAN;
+    picture.film.variance[4 * 300 + 1] = INFINITY;
+    picture.film.difference[4 * 500 + 2] = NAN;
+    picture.film.mean[4 * 700] = INFINITY;
+    const Denoised denoised = denoise(device(), picture.film, picture.guides);
+    EXPECT_TRUE(std::isfinite(denoised.relmse));
+    for (std::size_t i = 0; i < denoised.picture.size(); ++i) {
+        if (i == 100 || i == 700) continue;
+        EXPECT_NEAR(denoised.picture[i].x, 0.5, 0.3) << i;
+        EXPECT_TRUE(std::isfinite(denoised.picture[i].y) && std::isfinite(denoised.picture[i].z)) << i;
+    }
+}
+
+TEST(Denoise, ARendersErrorFallsAndItSaysSo) {
+    Renderer renderer(deviceOptions());
+    for (const char* name : {"sample:cornell", "sample:glass"}) {
+        const Scene scene = load(name);
+        RenderOptions options;
+        options.size = {48, 48};
+        options.samples = 512;
+        options.seed = 99;
+        const ImageF truth = renderer.render(scene, options).image;
+        options.samples = 8;
+        options.denoise = options.errorMap = true;
+        const RenderResult result = renderer.render(scene, options);
+        ASSERT_TRUE(result.denoised.has_value());
+        const double before = compareImages(result.image, truth).relmse;
+        const double after = compareImages(result.denoised->image, truth).relmse;
+        printf("%s: relMSE %.4g, denoised %.4g (measured %.4g, %.4g)\n", name, before, after,
+               result.denoised->undenoised, result.denoised->relmse);
+        EXPECT_LT(after, 0.8 * before) << name;
+        EXPECT_GT(result.denoised->strength, 0.2);
+        const nlohmann::json statistics = nlohmann::json::parse(result.json());
+        EXPECT_TRUE(statistics["denoised"]["biased"]);
+
+        const auto file = scratchFolder() / "denoised.exr";
+        saveDenoised(file, result);
+        const ImageF read = loadImage(file);
+        EXPECT_EQ(std::get<std::string>(read.metadata.at("denoised")).substr(0, 6), "biased");
+        EXPECT_GE(read.channel("strength"), 0);
+        saveErrorMap(scratchFolder() / "map.exr", result);
+        saveErrorMap(scratchFolder() / "map.png", result);
+        const ImageF map = loadImage(scratchFolder() / "map.exr");
+        double square = 0;
+        for (const float e : map.data) square += double(e) * e / double(map.data.size());
+        EXPECT_NEAR(std::log(square / result.error.relmse), 0, 0.7) << name;
+    }
+    RenderOptions one;
+    one.samples = 1;
+    one.denoise = true;
+    EXPECT_THROW(renderer.render(load("sample:cornell"), one), std::exception);
+}
+
+}  // namespace
+}  // namespace helio::test
