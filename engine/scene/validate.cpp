@@ -1,5 +1,7 @@
 /** @file What every scene must satisfy before anything is computed from it, an importer's or an
  * application's. */
+#include "engine/scene/lens_table.hpp"
+
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
@@ -345,10 +347,39 @@ private:
             refuse(place, "its projection is none of the known", "give one of Projection's values");
         number(place, "fieldOfView", camera.fieldOfView, 1e-6, 6.2831855);
         if (camera.lens) check(camera, *camera.lens, place);
+        if (camera.lensTable) check(camera, *camera.lensTable, place);
+        if (camera.shutter) {
+            number(place, "shutter.open", camera.shutter->open, -1e6, 1e6);
+            number(place, "shutter.close", camera.shutter->close, camera.shutter->open, 1e6);
+            number(place, "shutter.rolling", camera.shutter->rolling, 0, 1e6);
+        }
         if (!camera.exposure) return;
         number(place, "exposure.fNumber", camera.exposure->fNumber, 1e-3, 1e6);
         number(place, "exposure.shutterSeconds", camera.exposure->shutterSeconds, 1e-9, 1e9);
         number(place, "exposure.iso", camera.exposure->iso, 1e-3, 1e9);
+    }
+
+    void check(const Camera& camera, const LensTable& lens, const std::string& place) const {
+        if (!camera.perspective || camera.projection != Projection::Plane || camera.lens)
+            refuse(place, "has a lens table but no perspective, or a thin lens too", "leave one out");
+        if (lens.surfaces.empty() || lens.surfaces.size() > 32)
+            refuse(place, fmt::format("its lens has {} surfaces", lens.surfaces.size()), "give 1 to 32");
+        number(place, "lensTable.scale", lens.scale, 1e-12, 1e12);
+        number(place, "lensTable.filmHeight", lens.filmHeight, 1e-6, 1e6);
+        number(place, "lensTable.stop", lens.stop, 1e-3, 1);
+        for (const LensSurface& surface : lens.surfaces) {
+            number(place, "lensTable radius", surface.radius, -1e6, 1e6);
+            number(place, "lensTable thickness", surface.thickness, 0, 1e6);
+            number(place, "lensTable ior", surface.ior, 1, 4);
+            number(place, "lensTable diameter", surface.diameter, 1e-6, 1e6);
+        }
+        const ParaxialLens near = paraxial(lens);
+        if (!(near.focalLength > 0 && std::isfinite(near.focalLength)))
+            refuse(place, fmt::format("its lens has the focal length {:.3g}", near.focalLength),
+                   "give a lens that gathers light");
+        if (!(near.filmDistance > 0 && std::isfinite(near.filmDistance)))
+            refuse(place, "its lens is not sharp anywhere behind the last surface",
+                   "give a farther focusDistance");
     }
 
     void check(const Camera& camera, const ThinLens& lens, const std::string& place) const {

@@ -16,6 +16,7 @@ layout(constant_id = 2) const bool ORTHOGRAPHIC = false;
 
 #ifdef CAMERA_TABLE
 #include "shaders/shared/lens.glsl"
+#include "shaders/shared/lens_system.glsl"
 
 const uint PROJECTION_PLANE = 0u;  // the values of helio::Projection
 const uint PROJECTION_LAT_LONG = 1u;
@@ -24,13 +25,43 @@ const uint PROJECTION_EQUISOLID = 3u;
 layout(constant_id = 10) const uint PROJECTION = PROJECTION_PLANE;
 layout(constant_id = 11) const bool HAS_LENS = false;
 layout(constant_id = 12) const int BLADES = 0;
+layout(constant_id = 15) const int LENS_SURFACES = 0;  ///< of a lens table
+layout(constant_id = 16) const int LENS_BASE = 0;      ///< where it begins in uCamera
+const int PUPIL_RINGS = 32;
+layout(constant_id = 13) const bool HAS_TIME = false;  ///< something moves while the shutter is open
+layout(constant_id = 14) const int CAMERA_KEYS = 0;    ///< places of a camera that moves; 0 or 2 and more
 
 /** Texels of CameraTable in passes/pathtrace/camera_frame.hpp. */
 layout(set = 0, binding = 38) uniform samplerBuffer uCamera;
 
-/** Where on the lens a ray begins, for a uniform pair: in the unit disc. */
+/** Where on the lens a ray begins, for a uniform pair: in the unit disc; of a lens table in the square about its
+ * exit pupil. */
 vec2 lensPoint(vec2 u) {
+    if (LENS_SURFACES > 0) return 2.0 * u - 1.0;
     return HAS_LENS ? apertureSample(u, BLADES, texelFetch(uCamera, 0).w) : vec2(0.0);
+}
+
+/** Time of a ray through a row of the image, 0 to 1 over what is rendered, for a uniform number. */
+float rayTime(uint row, uint rows, float u) {
+    const vec2 shutter = texelFetch(uCamera, 2).xy;
+    return (float(row) + 0.5) / float(rows) * shutter.x + u * shutter.y;
+}
+
+/** The camera at that time: keys are so close that straight lines between them, brought back to their lengths, are
+ * its turns. */
+CameraFrame movedCamera(CameraFrame camera, float time) {
+    if (CAMERA_KEYS == 0) return camera;
+    const float place = clamp(time, 0.0, 1.0) * float(CAMERA_KEYS - 1);
+    const int key = min(int(place), CAMERA_KEYS - 2);
+    const float s = place - float(key);
+    vec4 rows[4];
+    for (int i = 0; i < 4; ++i)
+        rows[i] = texelFetch(uCamera, 3 + key * 4 + i) * (1.0 - s) + texelFetch(uCamera, 7 + key * 4 + i) * s;
+    camera.origin = rows[0];
+    camera.right = vec4(normalize(rows[1].xyz) * rows[1].w, 0.0);
+    camera.up = vec4(normalize(rows[2].xyz) * rows[2].w, 0.0);
+    camera.forward = vec4(normalize(rows[3].xyz), 0.0);
+    return camera;
 }
 
 /** Direction of a panorama or fisheye; the axes are unit. False beyond a fisheye's image circle. */
@@ -60,8 +91,32 @@ bool wideDirection(CameraFrame camera, vec2 point, vec2 size, out vec3 direction
     direction = camera.forward.xyz * cosine + (camera.right.xyz * p.x + camera.up.xyz * p.y) * perRadius;
     return r <= 1.0;
 }
+/** A ray from the film through the lens table, in the camera's frame and the table's units; x and y of the image from
+ * -1 to 1. Returns what its light counts: cos^4 of its angle on the film and the pupil's area, over that of an ideal
+ * lens of the same f-number. */
+float lensTableRay(vec2 image, vec2 lens, out vec3 origin, out vec3 direction) {
+    const vec4 film = texelFetch(uCamera, LENS_BASE), worth = texelFetch(uCamera, LENS_BASE + 1);
+    origin = vec3(-image * film.xy, film.z);
+    const float r = length(origin.xy);
+    const int ring = min(int(r * worth.y), PUPIL_RINGS - 1);
+    const vec4 pupil = texelFetch(uCamera, LENS_BASE + 2 + ring);
+    // The pupil was found for a point on the x axis.
+    const vec2 towards = r > 0.0 ? origin.xy / r : vec2(1.0, 0.0);
+    const vec2 p = vec2(mix(pupil.x, pupil.y, 0.5 + 0.5 * lens.x), pupil.z * lens.y);
+    const vec3 target = vec3(towards * p.x + vec2(-towards.y, towards.x) * p.y, film.w);
+    direction = normalize(target - origin);
+    const float cosine = direction.z * direction.z;
+    float weight = max(pupil.y - pupil.x, 0.0) * 2.0 * pupil.z * worth.z * cosine * cosine;
+    [[dont_unroll]] for (int i = 0; i < LENS_SURFACES; ++i)
+        if (!crossLensSurface(texelFetch(uCamera, LENS_BASE + 2 + PUPIL_RINGS + i), origin, direction)) weight = 0.0;
+    origin *= worth.x;
+    return weight;
+}
 #else
 const bool HAS_LENS = false;
+const int LENS_SURFACES = 0;
+const bool HAS_TIME = false;
+const int CAMERA_KEYS = 0;
 #endif
 
 /** Ray through a point of the image, in pixels, and of the lens, in the unit disc; the direction is unit. Returns what
@@ -76,6 +131,13 @@ float cameraRay(CameraFrame camera, vec2 point, uvec2 size, vec2 lens, out vec3 
         const bool seen = wideDirection(camera, point, vec2(size), direction);
         direction = normalize(direction);
         return seen ? 1.0 : 0.0;
+    }
+    if (LENS_SURFACES > 0) {
+        vec3 from, along;
+        const float weight = lensTableRay(vec2(x, y), lens, from, along);
+        origin = camera.origin.xyz + camera.right.xyz * from.x + camera.up.xyz * from.y + camera.forward.xyz * from.z;
+        direction = normalize(camera.right.xyz * along.x + camera.up.xyz * along.y + camera.forward.xyz * along.z);
+        return weight;
     }
     if (HAS_LENS) {
         // All rays of a point of the image meet at its point of the sharp plane.

@@ -1,16 +1,52 @@
 #include "passes/pathtrace/camera_frame.hpp"
 
+#include "engine/scene/lens_table.hpp"
+
 #include <cmath>
 
 namespace helio {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTwoPi = 6.283185307179586, kPi = 0.5 * kTwoPi;
 
 /** Half the height of what is seen at distance 1, or of an orthographic image. */
 double halfHeight(const Camera& camera) {
-    if (camera.projection != Projection::Plane) return 1.0;
+    if (camera.projection != Projection::Plane || camera.lensTable) return 1.0;
     return camera.perspective ? std::tan(0.5 * double(camera.yfov)) : double(camera.ymag);
+}
+
+/** When rows are exposed, and the camera's places meanwhile. */
+void addMotion(const Camera& camera, double aspect, const ShutterTimes& shutter,
+               const std::vector<glm::dmat4>& poses, CameraTable& table) {
+    table.constants["HAS_TIME"] = true;
+    table.texels[2] = glm::vec4(glm::dvec4(shutter.rolling, shutter.open, 0.0, 0.0));
+    if (poses.size() < 2) return;
+    table.constants["CAMERA_KEYS"] = std::int32_t(poses.size());
+    for (const glm::dmat4& pose : poses) {
+        const CameraFrame frame = cameraFrame(camera, pose, aspect);
+        table.texels.push_back(frame.origin);
+        for (const glm::vec4& side : {frame.right, frame.up})
+            table.texels.emplace_back(glm::vec3(side), glm::length(glm::vec3(side)));
+        table.texels.push_back(frame.forward);
+    }
+}
+
+void addLensTable(const LensTable& lens, double aspect, CameraTable& table) {
+    const ParaxialLens near = paraxial(lens);
+    const std::vector<glm::dvec4> surfaces = tracedSurfaces(lens);
+    const double height = 0.5 * double(lens.filmHeight), width = height * aspect,
+                 reach = std::hypot(width, height);
+    const double distance = near.filmDistance;
+    table.constants["LENS_BASE"] = std::int32_t(table.texels.size());
+    table.constants["LENS_SURFACES"] = std::int32_t(surfaces.size());
+    table.texels.emplace_back(glm::dvec4(width, height, surfaces[0].y - distance, surfaces[0].y));
+    // An ideal lens of this f-number gives the irradiance pi L / (4 N^2) on the axis: that is shown as L.
+    table.texels.emplace_back(glm::dvec4(double(lens.scale), kPupilRings / reach,
+                                         4.0 * near.fNumber * near.fNumber / (kPi * distance * distance),
+                                         0.0));
+    for (const ExitPupil& pupil : exitPupils(lens, reach, kPupilRings))
+        table.texels.emplace_back(glm::dvec4(pupil.low, pupil.high, pupil.side, 0.0));
+    for (const glm::dvec4& surface : surfaces) table.texels.emplace_back(surface);
 }
 
 }  // namespace
@@ -21,7 +57,8 @@ CameraFrame cameraFrame(const Camera& camera, const glm::dmat4& transform, doubl
     const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(transform[1])));
     const glm::dvec3 up = glm::cross(right, forward);
     const double height = halfHeight(camera);
-    const double width = camera.projection == Projection::Plane ? height * aspect : 1.0;
+    const bool isPlane = camera.projection == Projection::Plane && !camera.lensTable;
+    const double width = isPlane ? height * aspect : 1.0;
     CameraFrame frame;
     frame.origin = glm::vec4(glm::vec3(glm::dvec3(transform[3])), 1.0f);
     frame.right = glm::vec4(glm::vec3(right * width), 0.0f);
@@ -34,11 +71,12 @@ bool hasLens(const Camera& camera) {
     return camera.lens && camera.lens->apertureDiameter > 0;
 }
 
-CameraTable cameraTable(const Camera& camera, double aspect) {
+CameraTable cameraTable(const Camera& camera, double aspect, const ShutterTimes& shutter,
+                        const std::vector<glm::dmat4>& poses) {
     CameraTable table;
-    const bool wide = camera.projection != Projection::Plane;
-    if (!wide && !hasLens(camera)) return table;
-    table.texels.resize(2);
+    const bool wide = camera.projection != Projection::Plane, moves = shutter != ShutterTimes{};
+    if (!wide && !hasLens(camera) && !moves && !camera.lensTable) return table;
+    table.texels.resize(3);
     table.constants["PROJECTION"] = std::uint32_t(camera.projection);
     if (hasLens(camera)) {
         const double radius = 0.5 * double(camera.lens->apertureDiameter), height = halfHeight(camera);
@@ -50,6 +88,8 @@ CameraTable cameraTable(const Camera& camera, double aspect) {
     }
     const double half = 0.5 * double(camera.fieldOfView);
     table.texels[1] = glm::vec4(glm::dvec4(half / kTwoPi, std::sin(0.5 * half), 0.0, 0.0));
+    if (moves) addMotion(camera, aspect, shutter, poses, table);
+    if (camera.lensTable) addLensTable(*camera.lensTable, aspect, table);
     return table;
 }
 

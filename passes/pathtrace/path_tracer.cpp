@@ -51,7 +51,8 @@ struct PathTracer::Impl {
           scene_(sceneIn),
           options_(optionsIn),
           frame_(cameraFrame(camera, transform, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
-          camera_(cameraTable(camera, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
+          camera_(cameraTable(camera, double(optionsIn.size[0]) / double(optionsIn.size[1]),
+                              optionsIn.shutter, optionsIn.cameraPoses)),
           orthographic_(!camera.perspective),
           state_(device, "pathtrace.state", optionsIn.size[0] * 4, optionsIn.size[1] * 2, Format::RGBA32F),
           counters_(device, "pathtrace.counters", sizeof(DeviceCounters)) {
@@ -63,6 +64,7 @@ struct PathTracer::Impl {
         if (scene_.info().materialFeatures != 0)
             materialDefines_["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
         if (!camera_.texels.empty()) table_.emplace(makeBuffer(device, "pathtrace.camera", camera_.texels));
+        assert((scene_.info().motionKeys == 0 || options_.shutter != ShutterTimes{}) && "no time to move in");
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
         if (!scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
         declareTrace(film);
@@ -85,6 +87,7 @@ struct PathTracer::Impl {
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
         if (table_) defines["CAMERA_TABLE"] = "1";
+        if (scene_.info().motionKeys > 0) defines["MOTION_KEYS"] = std::to_string(scene_.info().motionKeys);
         if (generated_.empty() && defines.empty()) return built;
         return compileVariant(built, {.defines = defines, .generated = generated_});
     }
@@ -92,6 +95,10 @@ struct PathTracer::Impl {
     std::vector<std::string_view> surfaceBuffers() const {
         std::vector<std::string_view> names = kSurfaceBuffers;
         if (!materialDefines_.empty()) names.push_back("uTangents");
+        if (scene_.info().motionKeys > 0) {
+            std::erase(names, "uNormals");
+            names.insert(names.end(), {"uTriangleKeys", "uNormalKeys"});
+        }
         return names;
     }
 
@@ -247,8 +254,9 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
-    return {.tree = !choose || scene.triangleCount() > kWrittenOutTriangles,
-            .writeOutLargest = choose,
+    const bool moves = options.shutter != ShutterTimes{};
+    return {.tree = !choose || moves || scene.triangleCount() > kWrittenOutTriangles,
+            .writeOutLargest = choose && !moves,
             .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
             .sampleSurfaces = options.nextEventEstimation,
             .lights = options.lights};

@@ -63,14 +63,25 @@ layout(set = 0, binding = 2, std430) buffer Counters {
 layout(constant_id = 4) const uint FILTER_KIND = FILTER_BOX;
 layout(constant_id = 3) const bool COUNT_TURNS = true;  ///< the loop's body has loops of its own
 
+#ifdef CAMERA_TABLE
+/** The time of a path's rays. */
+float pathTime(PixelSampler numbers, uvec2 pixel) {
+    return rayTime(pixel.y, parameters.size.y, sample1D(SAMPLER_KIND, numbers, DIMENSION_TIME));
+}
+#endif
+
 Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     Path path;
     const vec2 place = vec2(pixel) + 0.5 + filterOffset(FILTER_KIND, sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER));
+    CameraFrame camera = parameters.camera;
     vec2 lens = vec2(0.0);
 #ifdef CAMERA_TABLE
-    if (HAS_LENS) lens = lensPoint(sample2D(SAMPLER_KIND, numbers, DIMENSION_LENS));
+    if (HAS_LENS || LENS_SURFACES > 0) lens = lensPoint(sample2D(SAMPLER_KIND, numbers, DIMENSION_LENS));
 #endif
-    path.throughput = vec3(cameraRay(parameters.camera, place, parameters.size, lens, path.origin, path.direction));
+#ifdef CAMERA_TABLE
+    if (CAMERA_KEYS > 0) camera = movedCamera(camera, pathTime(numbers, pixel));
+#endif
+    path.throughput = vec3(cameraRay(camera, place, parameters.size, lens, path.origin, path.direction));
     path.radiance = vec3(0.0);
     path.density = -1.0;
     path.depth = 0u;
@@ -119,6 +130,9 @@ void main() {
     cameraRays += inside && !resumed && sampleIndex < sampleEnd ? 1u : 0u;
     uint spent = 0u;
     while (inside && path.sampleIndex < sampleEnd && spent < parameters.budget) {
+#ifdef MOTION_KEYS
+        setMotionTime(pathTime(numbers, pixel));
+#endif
         float distance;
         int slot;
         const int closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
@@ -143,7 +157,7 @@ void main() {
             path = startPath(numbers, pixel, next);
             cameraRays += next < sampleEnd ? 1u : 0u;
         }
-        spent += 1u + LOOP_TURNS;
+        spent += 1u + LOOP_TURNS + uint(LENS_SURFACES);
         if (COUNT_TURNS) {
             abandonedRays += (closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u) + (shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u);
             spent += uint(subgroupMax(closestTurns) + subgroupMax(shadowTurns));

@@ -19,6 +19,16 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
     const ThinLens lens = view.camera.lens.value_or(ThinLens{});
     camera += fmt::format(" {} {} {} {} {} {}", int(view.camera.projection), view.camera.fieldOfView,
                           lens.apertureDiameter, lens.focusDistance, lens.blades, lens.bladeRotation);
+    if (view.camera.lensTable) {
+        const LensTable& table = *view.camera.lensTable;
+        camera += fmt::format(" {} {} {} {}", table.scale, table.filmHeight, table.focusDistance, table.stop);
+        for (const LensSurface& s : table.surfaces)
+            camera += fmt::format(" {} {} {} {}", s.radius, s.thickness, s.ior, s.diameter);
+    }
+    camera += fmt::format(" {} {}", view.shutter.rolling, view.shutter.open);
+    for (const glm::dmat4& pose : view.poses)
+        camera += fmt::format(" {} {} {}", pose[0][0] + 2 * pose[0][1], pose[1][1] + 2 * pose[1][2],
+                              pose[3][0] + 2 * pose[3][1] + 3 * pose[3][2]);
     for (glm::length_t c = 0; c < 4; ++c)
         for (glm::length_t r = 0; r < 3; ++r) camera += fmt::format(" {}", view.transform[c][r]);
     return {{"version", std::string(version())},

@@ -233,7 +233,7 @@ void checkPathSize(const std::array<std::uint32_t, 2>& size) {
                      fmt::format("give at most 4096x{}", kMaxFilmHeight));
 }
 
-PathTraceOptions pathTraceOptions(const RenderOptions& options) {
+PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTimes& shutter) {
     PathTraceOptions result;
     result.size = options.size;
     result.maxDepth = options.maxDepth < 0
@@ -252,6 +252,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
     result.samples = options.samples;
     result.lights = options.lights;
     result.filter = options.filter;
+    result.shutter = shutter;
     result.seed = options.seed;
     result.adaptive = options.adaptive;
     return result;
@@ -260,8 +261,9 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options) {
 void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job) {
     RenderResult& result = job.result;
     target.clear();
-    PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, pathTraceOptions(job.options),
-                      target.film());
+    PathTraceOptions traceOptions = pathTraceOptions(job.options, view.shutter);
+    traceOptions.cameraPoses = view.poses;
+    PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, traceOptions, target.film());
     job.graphviz = tracer.graphviz();
     // Every kernel runs once before the clock of rendering starts: the driver compiles at the first dispatch.
     // The pass of first hits needs no second run.

@@ -10,7 +10,7 @@ namespace helio {
 /** Throws InputError for a size that the path pipeline cannot hold. */
 void checkPathSize(const std::array<std::uint32_t, 2>& size);
 /** The path tracer's options for a render. */
-PathTraceOptions pathTraceOptions(const RenderOptions& options);
+PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTimes& shutter = {});
 
 /** Traces the scene into the film until the samples, the time or the error asked for are reached, or the
  * application cancels; fills in the job's result. The film holds the samples of all whole batches; after

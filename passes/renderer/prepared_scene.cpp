@@ -45,10 +45,11 @@ PackOptions about(PackOptions pack, const glm::dvec3& origin) {
 
 }  // namespace
 
-PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptions& pack)
+PreparedScene::PreparedScene(Device& device, const Scene& scene, std::span<const Scene> later,
+                             const PackOptions& pack)
     : bounds(scene.bounds()),
       origin(originOf(bounds)),
-      deviceScene(device, scene, about(pack, origin)),
+      deviceScene(device, scene, later, about(pack, origin)),
       skipped(scene.skipped),
       warnings(deviceScene.info().warnings) {
     bounds.lower -= origin;
@@ -62,19 +63,24 @@ PreparedScene::PreparedScene(Device& device, const Scene& scene, const PackOptio
 PreparedScene::~PreparedScene() = default;
 
 PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Environment>& environment,
-                                   const PackOptions& pack) {
-    const SceneIdentity identity = identify(scene, environment);
+                                   std::span<const Scene> later, const PackOptions& pack) {
+    SceneIdentity identity = identify(scene, environment);
+    for (const Scene& pose : later) {
+        const SceneIdentity next = identify(pose, environment);
+        for (std::size_t i = 0; i < 2; ++i)
+            identity.words[i] = (identity.words[i] + next.words[i]) * 0x9e3779b97f4a7c15ull;
+    }
     if (prepared_ && identity == identity_ && pack == pack_) {
         return *prepared_;
     }
     prepared_.reset();  // before the new one: both need not fit the device
     const bool same = environment == scene.environment;
     if (same) {
-        prepared_ = std::make_unique<PreparedScene>(device_, scene, pack);
+        prepared_ = std::make_unique<PreparedScene>(device_, scene, later, pack);
     } else {
         Scene lit = scene;
         lit.environment = environment;
-        prepared_ = std::make_unique<PreparedScene>(device_, lit, pack);
+        prepared_ = std::make_unique<PreparedScene>(device_, lit, later, pack);
     }
     prepared_->identity = identity;
     identity_ = identity;
@@ -86,7 +92,7 @@ PreparedScene& SceneCache::prepare(const Scene& scene, const std::optional<Envir
 View chooseView(const Scene& scene, const std::string& nameOrIndex, double aspect) {
     const auto viewOf = [](const Scene& from, const PlacedCamera& placed) {
         checkAxes(from, placed);
-        return View{from.cameras[std::size_t(placed.camera)], placed.transform};
+        return View{from.cameras[std::size_t(placed.camera)], placed.transform, {}, {}};
     };
     // chooseCamera adds a camera to a scene that has none, hence the copies; meshes are needed only then.
     if (scene.placedCameras().empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 /** @file A scene made ready for the device, and how it is found again. */
+#include "passes/pathtrace/camera_frame.hpp"
 #include "passes/renderer/scene_identity.hpp"
 #include "passes/scene/device_scene.hpp"
 
@@ -8,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +20,7 @@ class RasterSession;
 
 /** The scene on the device with what was found out about it. */
 struct PreparedScene {
-    PreparedScene(Device& device, const Scene& scene, const PackOptions& pack);
+    PreparedScene(Device& device, const Scene& scene, std::span<const Scene> later, const PackOptions& pack);
     ~PreparedScene();
     Scene::Bounds bounds;  ///< about `origin`
     /** The world's point that what is on the device is relative to: 0, or the middle of a scene that is
@@ -36,9 +38,10 @@ struct PreparedScene {
 class SceneCache {
 public:
     explicit SceneCache(Device& device) : device_(device) {}
-    /** The scene under this environment. The one before is destroyed when another is made. */
+    /** The scene under this environment; where it moves, with its poses at `later` times. The one before is
+     * destroyed when another is made. */
     PreparedScene& prepare(const Scene& scene, const std::optional<Environment>& environment,
-                           const PackOptions& pack);
+                           std::span<const Scene> later, const PackOptions& pack);
     std::uint64_t builds() const { return builds_; }
 
 private:
@@ -53,6 +56,8 @@ private:
 struct View {
     Camera camera;
     glm::dmat4 transform{1.0};
+    std::vector<glm::dmat4> poses;  ///< while the shutter is open, where it moves
+    ShutterTimes shutter;           ///< where anything moves
 };
 /** The camera to render with, by chooseCamera's rules, for an image of this aspect (width / height). */
 View chooseView(const Scene& scene, const std::string& nameOrIndex, double aspect);

@@ -390,6 +390,9 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
         scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);
     }
     if (!job.notify({.stage = "compile"})) return;
+    if (view.camera.lensTable)
+        job.result.skipped.emplace_back("lens table",
+                                        "the raster pipeline shows a pinhole of the camera's field of view");
     scene.raster->render(rasterView, hasLens(view.camera) ? view.camera.lens : std::nullopt, job);
 }
 

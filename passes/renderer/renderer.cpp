@@ -1,4 +1,5 @@
 #include "passes/renderer/lighting.hpp"
+#include "passes/renderer/motion.hpp"
 #include "passes/renderer/path_render.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/raster_render.hpp"
@@ -45,6 +46,15 @@ void check(const RenderOptions& options) {
     refuse(!(options.maxError >= 0), "maxError", "is negative or not a number", "give 0 for no limit");
     refuse(!(options.maxSeconds >= 0), "maxSeconds", "is negative or not a number", "give 0 for no limit");
     refuse(!std::isfinite(options.frameTime), "frameTime", "is not finite", "give a time in seconds");
+    if (options.shutter) {
+        const auto [open, close] = *options.shutter;
+        refuse(!(open >= -1e6 && close <= 1e6), "shutter", fmt::format("from {} to {}", open, close),
+               "give seconds");
+        refuse(!(close >= open), "shutter", fmt::format("closes at {} before it opens at {}", close, open),
+               "give a close of at least open");
+    }
+    refuse(options.motionSteps == 0 || options.motionSteps > 64, "motionSteps",
+           fmt::format("{} steps", options.motionSteps), "give 1 to 64");
     checkAntialiasing(options.antialiasing);
     const Shadows& shadows = options.shadows;
     refuse(shadows.resolution != 0 && (shadows.resolution < 16 || shadows.resolution > 4096),
@@ -124,7 +134,7 @@ void RenderJob::addTimings(const std::vector<PassTiming>& timings) {
 struct Renderer::Impl {
     explicit Impl(const DeviceOptions& options) : device(options), scenes(device) {}
 
-    void run(const Scene& scene, RenderJob& job);
+    void run(const Scene& scene, const Motion& motion, RenderJob& job);
     FilmTarget& film(const std::array<std::uint32_t, 2>& size) {
         if (!target || target->film().width() != size[0] || target->film().height() != size[1]) {
             target.reset();
@@ -139,7 +149,7 @@ struct Renderer::Impl {
     std::string graphviz;
 };
 
-void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
+void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& job) {
     const RenderOptions& options = job.options;
     if (!job.notify({.stage = "load"})) return;
     View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
@@ -149,12 +159,16 @@ void Renderer::Impl::run(const Scene& scene, RenderJob& job) {
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
     warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;
-    const PackOptions pack =
-        path ? PathTracer::packOptions(scene, pathTraceOptions(options)) : rasterPackOptions();
-    PreparedScene& prepared = scenes.prepare(scene, environment, pack);
+    const PackOptions pack = path ? PathTracer::packOptions(scene, pathTraceOptions(options, motion.shutter))
+                                  : rasterPackOptions();
+    PreparedScene& prepared = scenes.prepare(scene, environment, motion.later, pack);
     view.transform[3] -= glm::dvec4(prepared.origin, 0.0);
+    view.poses = motion.cameraPoses;
+    for (glm::dmat4& pose : view.poses) pose[3] -= glm::dvec4(prepared.origin, 0.0);
+    view.shutter = motion.shutter;
     job.result.features = prepared.features;
     job.result.skipped = prepared.skipped;
+    job.result.skipped.insert(job.result.skipped.end(), motion.skipped.begin(), motion.skipped.end());
     job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
     warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
     if (!job.notify({.stage = "compile"})) return;
@@ -187,12 +201,8 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderResult& result = job.result;
     check(options);
     if (options.pipeline == Pipeline::Path) checkPathSize(options.size);
-    std::optional<Scene> still;  // only a scene that moves is copied
-    if (needsPose(scene)) {
-        still = posed(scene, options.frameTime, options.animation);
-    } else {
-        scene.validate();
-    }
+    Motion motion = motionOf(scene, options);
+    std::optional<Scene>& still = motion.first;  // only a scene that moves is copied
     check(options.environment, scene);
     if (options.integrator == Integrator::AmbientOcclusion) still = whiteScene(still ? *still : scene);
     result.scene = scene.name;
@@ -200,7 +210,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     result.version = version();
     result.seed = options.seed;
     result.warnings = scene.warnings;
-    impl_->run(still ? *still : scene, job);
+    impl_->run(still ? *still : scene, motion, job);
     job.finish();
     if (result.image.data.empty()) result.image = blackImage(options.size);
     if (!job.graphviz.empty()) impl_->graphviz = job.graphviz;

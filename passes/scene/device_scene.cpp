@@ -7,8 +7,9 @@
 
 namespace helio {
 
-DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& options)
-    : info_(packScene(scene, options)) {
+DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Scene> later,
+                         const PackOptions& options)
+    : info_(packScene(scene, later, options)) {
     hostBytes_ = info_.bytes();
     const auto& environment = info_.environment;
     hasLightTables_ = !info_.lightSlots.empty();
@@ -63,6 +64,10 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, const PackOptions& 
     upload("uTextures", textures, Format::Undefined);
     upload("uTexels8", info_.texels8, Format::R32UI);
     upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
+    if (info_.motionKeys > 0) {
+        upload("uTriangleKeys", info_.triangleKeys, Format::Undefined);
+        upload("uNormalKeys", info_.normalKeys, Format::Undefined);
+    }
     if (hasLightTables()) {
         upload("uLightSlots", info_.lightSlots, Format::Undefined);
         upload("uLightCells", info_.lightCells, Format::R32UI);

@@ -20,7 +20,11 @@ namespace helio {
  * environment is an image is there a uEnvironmentMap, for kernels compiled with ENVIRONMENT_IMAGE. */
 class DeviceScene {
 public:
-    DeviceScene(Device& device, const Scene& scene, const PackOptions& options = {});
+    DeviceScene(Device& device, const Scene& scene, const PackOptions& options = {})
+        : DeviceScene(device, scene, {}, options) {}
+    /** A scene that moves, see packScene(): uTriangleKeys and uNormalKeys are there, for kernels compiled
+     * with MOTION_KEYS. */
+    DeviceScene(Device& device, const Scene& scene, std::span<const Scene> later, const PackOptions& options);
 
     /** Imports the named buffers into a graph and returns read bindings for them, to hand to Pass::reads. */
     std::vector<Binding> bindings(Graph& graph, const std::vector<std::string_view>& names);

@@ -64,7 +64,7 @@ bool makesParallelogram(const glm::vec3* a, const glm::vec3* b, Candidate& light
 }
 
 void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
-                 std::vector<Candidate>& lights) {
+                 const std::vector<bool>& isMoving, std::vector<Candidate>& lights) {
     // Radiance that decides how often a surface is chosen: constant over a material's surfaces, so that the
     // density per area is too, and a ray that finds the surface knows it from the material alone.
     std::vector<glm::dvec3> meanRadiance(scene.materials.size() + 1, glm::dvec3(0.0));
@@ -81,7 +81,7 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
     }
     for (std::size_t g = 0; g < surfaces.size(); ++g) {
         const std::uint32_t index = surfaces[g].material;
-        if (!(mean(meanRadiance[index]) > 0.0)) continue;
+        if (!(mean(meanRadiance[index]) > 0.0) || isMoving[index]) continue;
         const Material& material = scene.materials[index];
         const glm::vec3* corners = positions.data() + g * 3;
         Candidate light;
@@ -237,7 +237,11 @@ glm::vec4 texel(const glm::dvec3& v, std::uint32_t bits) {
 void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
             const PackOptions& options, PackedScene& packed) {
     std::vector<Candidate> candidates;
-    if (options.sampleSurfaces) addSurfaces(scene, positions, surfaces, candidates);
+    // Where a light stands depends on the time: materials of moving surfaces are found by rays alone.
+    std::vector<bool> isMoving(scene.materials.size() + 1, false);
+    for (const Surface& surface : surfaces)
+        if (surface.moves) isMoving[surface.material] = true;
+    if (options.sampleSurfaces) addSurfaces(scene, positions, surfaces, isMoving, candidates);
     packed.areaLights = !candidates.empty();
     const std::size_t areaCount = candidates.size();
     for (const Candidate& light : candidates) packed.triangleLights |= light.kind == LightKind::Triangle;
@@ -251,6 +255,8 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     const std::size_t few = options.lights == LightChoice::Adaptive ? kFewLights : 1;
     if (options.lights != LightChoice::Power && candidates.size() > few)
         makeTables(candidates, positions, options.lights == LightChoice::Adaptive, packed);
+    for (std::size_t g = 0; g < packed.lightOfTriangle.size(); ++g)
+        if (isMoving[surfaces[g].material]) packed.lightOfTriangle[g] = ~0u;
 
     std::vector<double> weights;
     for (const Candidate& light : candidates) weights.push_back(light.weight);

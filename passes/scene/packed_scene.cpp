@@ -134,10 +134,11 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, cons
 }  // namespace
 
 std::uint64_t PackedScene::bytes() const {
-    return bytesOf(triangles) + bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) +
-           bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) + bytesOf(materials) + bytesOf(lights) +
-           bytesOf(textures) + bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) +
-           bytesOf(lightSlots) + bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
+    return bytesOf(triangles) + bytesOf(triangleKeys) + bytesOf(normalKeys) + bytesOf(instanceFirst) +
+           bytesOf(nodes) + bytesOf(normals) + bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) +
+           bytesOf(materials) + bytesOf(lights) + bytesOf(textures) + bytesOf(texels8) +
+           bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) + bytesOf(lightCells) +
+           bytesOf(lightRanges) + bytesOf(lightOfTriangle);
 }
 
 KernelVariant acceleratorVariant(AcceleratorKind kind) {
@@ -145,14 +146,22 @@ KernelVariant acceleratorVariant(AcceleratorKind kind) {
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
+    return packScene(scene, {}, options);
+}
+
+PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options) {
     PackedScene packed;
     std::vector<pack::Surface> surfaces;
     std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
-    const std::size_t twins = pack::collapseTwins(scene, surfaces, options.tree, positions);
-    if (twins > 0)
+    std::vector<std::vector<glm::vec3>> keys;
+    if (!later.empty()) {
+        // What lies in one place now may part when it moves.
+        keys = pack::motion(positions, later, options, packed, surfaces);
+    } else if (const std::size_t twins = pack::collapseTwins(scene, surfaces, options.tree, positions)) {
         packed.warnings.push_back(fmt::format(
             "{} triangles lie exactly on opaque ones before them and are left out; delete the doubles",
             twins));
+    }
 
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;
@@ -160,7 +169,11 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
     pack::environment(scene, options, packed);
     pack::lights(scene, positions, surfaces, options, packed);
 
-    const std::vector<std::uint32_t> order = accelerate(positions, options, packed);
+    const std::vector<std::uint32_t> order =
+        accelerate(keys.empty() ? positions : pack::waysBoxes(keys), options, packed);
+    for (const auto& key : keys)
+        for (const std::uint32_t g : order)
+            for (std::uint32_t k = 0; k < 3; ++k) packed.triangleKeys.emplace_back(key[g * 3 + k], 0.0f);
     packed.triangles.reserve(std::size_t(packed.triangleCount) * 3);
     for (std::uint32_t g : order) {
         packed.triangles.push_back(withBits(positions[g * 3 + 0], g));

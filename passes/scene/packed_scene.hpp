@@ -96,6 +96,11 @@ struct PackedScene {
     std::vector<std::uint32_t> texels8;  ///< RGBA8 as stored in the file, R in the low byte
     std::vector<glm::vec4> texelsFloat;  ///< linear float texels
     glm::vec3 environment{0.0f};  ///< radiance of what no geometry covers: constant, or times the image
+    /** Of a scene that moves: corners at each of motionKeys times, 3 texels a slot, one time after another.
+     */
+    std::vector<glm::vec4> triangleKeys;
+    std::vector<glm::vec4> normalKeys;  ///< `normals` likewise, where there are any
+    std::uint32_t motionKeys = 0;       ///< 0 where nothing moves
     /** Image of the surroundings with the tables that draw from it, empty where they are constant. */
     std::vector<glm::vec4> environmentMap;
     std::array<std::uint32_t, 2> environmentSize{0, 0};  ///< texels
@@ -150,6 +155,10 @@ KernelVariant acceleratorVariant(AcceleratorKind kind);
 /** Flattens a scene. Throws InputError where an index is out of range, a position is not finite in float, or
  * the scene has more triangles or texels than a 32-bit index reaches. */
 PackedScene packScene(const Scene& scene, const PackOptions& options = {});
+/** Flattens a scene that moves: `later` is the same scene at further times, evenly spaced; every vertex goes
+ * in straight lines from one to the next. Boxes of the tree hold a triangle's whole way. Surfaces that emit
+ * and move, and those of their materials, are left out of the light table. Takes Bvh alone. */
+PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options);
 
 namespace pack {
 // The steps of packScene, each in its own file. All append to `packed`.
@@ -158,6 +167,7 @@ namespace pack {
 struct Surface {
     std::uint32_t instance = 0;
     std::uint32_t material = 0;  ///< into the packed materials
+    bool moves = false;
 };
 
 /** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
@@ -169,6 +179,13 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
  * back faces. Returns how many. */
 std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces, bool fromBothSides,
                           std::vector<glm::vec3>& positions);
+/** Positions at every time, the first included; fills PackedScene::normalKeys and motionKeys and says which
+ * surfaces move. */
+std::vector<std::vector<glm::vec3>> motion(const std::vector<glm::vec3>& positions,
+                                           std::span<const Scene> later, const PackOptions& options,
+                                           PackedScene& packed, std::vector<Surface>& surfaces);
+/** Triangles with the boxes of the moving ones' whole ways: what a tree is built of. */
+std::vector<glm::vec3> waysBoxes(const std::vector<std::vector<glm::vec3>>& keys);
 /** Materials and textures that some instance uses. */
 void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed);
 /** The light table: emissive triangles (pairs that make a parallelogram as one) and punctual lights, chosen

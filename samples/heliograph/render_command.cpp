@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ struct RenderArguments {
     std::string stats, graph, errorMap;
     std::string device = "auto";
     std::string antialiasing;
+    std::string shutter;
     Display display;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
@@ -63,6 +65,21 @@ std::array<std::uint32_t, 2> parseSize(const std::string& text) {
 bool isRadiance(const std::string& text) {
     return text.find_first_not_of("0123456789+-.,eE") == std::string::npos ||
            (text.find(',') != std::string::npos && !std::filesystem::exists(text));
+}
+
+/** OPEN,CLOSE in seconds. */
+std::array<double, 2> parseShutter(const std::string& text) {
+    const std::size_t comma = text.find(',');
+    const std::string expected = "OPEN,CLOSE in seconds, such as 0,0.02";
+    if (comma == std::string::npos)
+        throw CLI::ValidationError("--shutter", "'" + text + "' is not " + expected);
+    const std::string_view view(text);
+    const std::array<double, 2> times = {parseNumber<double>(view.substr(0, comma), "--shutter", expected),
+                                         parseNumber<double>(view.substr(comma + 1), "--shutter", expected)};
+    if (!(times[0] <= times[1]) || !(std::abs(times[0]) <= 1e6 && std::abs(times[1]) <= 1e6)) {
+        throw CLI::ValidationError("--shutter", "'" + text + "' closes before it opens");
+    }
+    return times;
 }
 
 /** R,G,B: a constant radiance. */
@@ -235,6 +252,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     RenderOptions& options = arguments.options;
     options.size = parseSize(arguments.size);
     options.nextEventEstimation = !arguments.noNextEvent;
+    if (!arguments.shutter.empty()) options.shutter = parseShutter(arguments.shutter);
     const bool image = !arguments.environment.empty() && !isRadiance(arguments.environment);
     if (!arguments.environment.empty() && !image) options.environment = parseRadiance(arguments.environment);
     checkPipelineOptions(command, options);
@@ -354,6 +372,13 @@ void addRenderCommand(CLI::App& app, Command& run) {
         ->add_option("--frame-time", options.frameTime,
                      "Seconds at which animations, skins and morph targets are evaluated")
         ->check(CLI::Number)
+        ->capture_default_str();
+    command->add_option("--shutter", arguments->shutter,
+                        "OPEN,CLOSE in seconds from --frame-time on: what moves meanwhile is blurred (path)");
+    command
+        ->add_option("--motion-steps", options.motionSteps,
+                     "Straight lines in which vertices go while the shutter is open")
+        ->check(CLI::Range(1u, 64u))
         ->capture_default_str();
     command->add_option("--animation", options.animation,
                         "Name or index of the animation; default the first; none for the pose of the nodes");

@@ -179,9 +179,15 @@ void visitTriangle(inout Traversal t, const bool any) {
     const int candidate = int(t.leafBase) + bitCount(t.leafAll & lower);
     t.leafMask &= t.leafMask - 1u;
     const uvec4 first = texelFetch(uTriangles, candidate * 3);
+#ifdef MOTION_KEYS
+    const vec3 a = sheared(t.ray, movingCorner(candidate, 0));
+    const vec3 b = sheared(t.ray, movingCorner(candidate, 1));
+    const vec3 c = sheared(t.ray, movingCorner(candidate, 2));
+#else
     const vec3 a = sheared(t.ray, uintBitsToFloat(first.xyz));
     const vec3 b = sheared(t.ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 1).xyz));
     const vec3 c = sheared(t.ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 2).xyz));
+#endif
     const int g = int(first.w);
     float distance;
     bool hit = lineMeetsTriangle(t.ray, a, b, c, distance);

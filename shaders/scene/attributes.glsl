@@ -7,11 +7,27 @@ layout(set = 0, binding = 22) uniform samplerBuffer uNormals;    ///< unit world
 layout(set = 0, binding = 23) uniform samplerBuffer uTexcoords;  ///< u, v of slot 0, u, v of slot 1
 layout(set = 0, binding = 24) uniform samplerBuffer uColors;     ///< linear RGBA
 
+#ifdef MOTION_KEYS
+#include "shaders/scene/triangles.glsl"
+
+/** uNormals at each key, one time after another. */
+layout(set = 0, binding = 40) uniform samplerBuffer uNormalKeys;
+
+vec3 vertexNormal(int g, int corner) {
+    const int at = (motionKey * TRIANGLE_COUNT + g) * 3 + corner;
+    return texelFetch(uNormalKeys, at).xyz * (1.0 - motionFraction) +
+           texelFetch(uNormalKeys, at + TRIANGLE_COUNT * 3).xyz * motionFraction;
+}
+#else
+vec3 vertexNormal(int g, int corner) {
+    return texelFetch(uNormals, g * 3 + corner).xyz;
+}
+#endif
+
 /** Interpolated shading normal, unit; `face` (unit) where the scene has none or the interpolation vanishes. */
 vec3 shadingNormal(int g, vec3 b, vec3 face) {
     if (!HAS_NORMALS) return face;
-    const vec3 n = b.x * texelFetch(uNormals, g * 3).xyz + b.y * texelFetch(uNormals, g * 3 + 1).xyz +
-                   b.z * texelFetch(uNormals, g * 3 + 2).xyz;
+    const vec3 n = b.x * vertexNormal(g, 0) + b.y * vertexNormal(g, 1) + b.z * vertexNormal(g, 2);
     const float squared = dot(n, n);
     return squared > 1e-12 ? n * inversesqrt(squared) : face;
 }

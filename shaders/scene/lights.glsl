@@ -158,6 +158,9 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
 /** Density per area with which sampleLight() takes a point of the light that triangle g belongs to. */
 float lightAreaDensity(int place, int g) {
     const int row = int(texelFetch(uLightOfTriangle, g).x);
+#ifdef MOTION_KEYS
+    if (row < 0) return 0.0;  // it moves, and is found by rays alone
+#endif
     return lightChance(place, row) * uintBitsToFloat(LIGHT_ROW(row * LIGHT_TEXELS, 5).w);
 }
 #endif

@@ -2,8 +2,10 @@
 #define HELIOGRAPH_SCENE_TRIANGLES
 /** @file
  * World-space triangles. "Slot" is the place in the buffer (the tree's order), g the index in scene order.
- * Read as unsigned words, so that the integers among them can never be flushed as denormal floats.
+ * Read as unsigned words, so that the integers among them can never be flushed as denormal floats. A scene that moves
+ * is compiled with MOTION_KEYS.
  */
+#include "shaders/scene/features.glsl"
 
 /** 3 texels a slot: v0.xyz | g, v1.xyz | instance, v2.xyz | material. */
 layout(set = 0, binding = 20) uniform usamplerBuffer uTriangles;
@@ -17,7 +19,36 @@ struct Triangle {
     int material;
 };
 
+#ifdef MOTION_KEYS
+/** Corners at MOTION_KEYS times, evenly over the time that is rendered: 3 texels a slot, one time after another. */
+layout(set = 0, binding = 39) uniform samplerBuffer uTriangleKeys;
+
+/** The time of what is traced: between which keys, and how far. A kernel sets it before it traces. */
+int motionKey = 0;
+float motionFraction = 0.0;
+
+/** `time`: 0 to 1. */
+void setMotionTime(float time) {
+    const float place = clamp(time, 0.0, 1.0) * float(MOTION_KEYS - 1);
+    motionKey = min(int(place), MOTION_KEYS - 2);
+    motionFraction = place - float(motionKey);
+}
+
+/** A corner at that time: in a straight line between keys, and within their box whatever the rounding. */
+vec3 movingCorner(int slot, int corner) {
+    const int at = (motionKey * TRIANGLE_COUNT + slot) * 3 + corner;
+    const vec3 from = texelFetch(uTriangleKeys, at).xyz, to = texelFetch(uTriangleKeys, at + TRIANGLE_COUNT * 3).xyz;
+    return clamp(from * (1.0 - motionFraction) + to * motionFraction, min(from, to), max(from, to));
+}
+#endif
+
 Triangle fetchTriangle(int slot) {
+#ifdef MOTION_KEYS
+    const uvec4 ids = uvec4(texelFetch(uTriangles, slot * 3).w, texelFetch(uTriangles, slot * 3 + 1).w,
+                            texelFetch(uTriangles, slot * 3 + 2).w, 0u);
+    return Triangle(movingCorner(slot, 0), movingCorner(slot, 1), movingCorner(slot, 2), int(ids.x), int(ids.y),
+                    int(ids.z));
+#endif
     const uvec4 a = texelFetch(uTriangles, slot * 3);
     const uvec4 b = texelFetch(uTriangles, slot * 3 + 1);
     const uvec4 c = texelFetch(uTriangles, slot * 3 + 2);

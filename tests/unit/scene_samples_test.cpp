@@ -110,9 +110,9 @@ TEST(Cornell, IsLambertian) {
     }
 }
 
-TEST(Samples, AreEight) {
+TEST(Samples, AreEleven) {
     EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "gallery", "glass", "instances",
-                                                       "lights500", "materials", "plates", "terrain"}));
+                                                       "lenses", "lights500", "materials", "plates", "snell", "terrain", "wheel"}));
 }
 
 class EverySample : public testing::TestWithParam<std::string> {};
@@ -155,7 +155,7 @@ TEST_P(EverySample, IsSound) {
 
 TEST_P(EverySample, IsInViewAndLit) {
     Scene scene = load("sample:" + GetParam());
-    ASSERT_EQ(scene.placedCameras().size(), 1u);
+    ASSERT_GE(scene.placedCameras().size(), 1u);
     const PlacedCamera placed = chooseCamera(scene, "");
     const glm::dmat4 toCamera = glm::inverse(placed.transform);
     const double limit = std::tan(scene.cameras[std::size_t(placed.camera)].yfov / 2.0);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace helio {
 
@@ -26,12 +27,41 @@ struct ThinLens {
     bool operator==(const ThinLens&) const = default;
 };
 
+/** A spherical surface of a lens, or its aperture stop. */
+struct LensSurface {
+    float radius = 0;     ///< of curvature; positive: its centre lies on the film's side; 0: flat, the stop
+    float thickness = 0;  ///< to the next surface, towards the film; of the last one unused
+    float ior = 1;        ///< of what lies behind it, towards the film
+    float diameter = 0;   ///< of what of it is open
+    bool operator==(const LensSurface&) const = default;
+};
+
+/** A lens as its maker describes it, for perspective cameras: rays are traced through every surface. The
+ * camera's position is that of the front surface; the field of view is not used. */
+struct LensTable {
+    std::vector<LensSurface> surfaces;  ///< from the front to the film
+    float scale = 0.001f;               ///< scene units of a unit of the table; 0.001: millimetres
+    float filmHeight = 24;              ///< units of the table
+    float focusDistance = std::numeric_limits<float>::infinity();  ///< from the front surface, scene units
+    float stop = 1;  ///< how far the stop (the flat surface) is open, as part of its diameter
+    bool operator==(const LensTable&) const = default;
+};
+
 /** What a photographer sets. Only what is displayed goes by it, see RenderResult::exposure. */
 struct Exposure {
     float fNumber = 16;
     float shutterSeconds = 0.01f;
     float iso = 100;
     bool operator==(const Exposure&) const = default;
+};
+
+/** When light falls on the film, seconds from the frame's time on. */
+struct Shutter {
+    double open = 0, close = 0;
+    /** Seconds from the first row to the last: each row opens (row + 1/2) / rows of it later than `open`,
+     * from the top down. 0: all rows at once. */
+    double rolling = 0;
+    bool operator==(const Shutter&) const = default;
 };
 
 struct Camera {
@@ -48,6 +78,8 @@ struct Camera {
     float fieldOfView = 3.14159265f;
     std::optional<ThinLens> lens;
     std::optional<Exposure> exposure;
+    std::optional<LensTable> lensTable;
+    std::optional<Shutter> shutter;  ///< none: the scene stands still
 };
 
 /** The lens of this f-number before a sensor of this height (scene units; 24 mm where they are metres) that

@@ -122,6 +122,11 @@ struct RenderOptions {
     std::string camera;                      ///< name or index; empty for the first
     double frameTime = 0;                    ///< seconds; the scene is shown as posed() makes it
     std::string animation;                   ///< name, index or "none"; empty for the first
+    /** Seconds from frameTime on between which the shutter is open, in place of the camera's. The path pipeline
+     * shows what moves meanwhile; the raster pipeline shows the pose in which it opens. */
+    std::optional<std::array<double, 2>> shutter;
+    /** Straight lines in which a vertex goes while the shutter is open; cameras turn smoothly. */
+    std::uint32_t motionSteps = 1;
     std::optional<Environment> environment;  ///< replaces the scene's
     bool cullBackFaces = false;
     Antialiasing antialiasing;                               ///< of the raster pipeline

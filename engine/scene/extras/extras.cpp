@@ -105,6 +105,18 @@ ThinLens lensOf(const std::string& file, int index, const Camera& camera, const 
     return to;
 }
 
+LensTable lensTableOf(const json& from) {
+    LensTable to;
+    for (const json& row : from["surfaces"])
+        to.surfaces.push_back(
+            {row[0].get<float>(), row[1].get<float>(), row[2].get<float>(), row[3].get<float>()});
+    to.scale = from.value("scale", to.scale);
+    to.filmHeight = from.value("filmHeight", to.filmHeight);
+    to.focusDistance = from.value("focusDistance", to.focusDistance);
+    to.stop = from.value("stop", to.stop);
+    return to;
+}
+
 Environment environmentOf(const std::string& file, const std::string& pointer, const json& from,
                           Scene& scene) {
     Environment to;
@@ -163,6 +175,14 @@ void readCamera(const std::string& file, const json& object, int index, Camera& 
         refuseCamera(file, index, "fieldOfView", "belongs to a fisheye", "leave it out");
     camera.fieldOfView = own->value("fieldOfView", camera.fieldOfView);
     if (own->contains("lens")) camera.lens = lensOf(file, index, camera, (*own)["lens"]);
+    if (own->contains("lensTable")) camera.lensTable = lensTableOf((*own)["lensTable"]);
+    if (own->contains("shutter")) {
+        const json& from = (*own)["shutter"];
+        const Shutter shutter{from.value("open", 0.0), from.value("close", 0.0), from.value("rolling", 0.0)};
+        if (shutter.close < shutter.open)
+            refuseCamera(file, index, "shutter/close", "lies before open", "give a close of at least open");
+        camera.shutter = shutter;
+    }
     if (!own->contains("exposure")) return;
     const json& from = (*own)["exposure"];
     Exposure to;
