@@ -4,6 +4,7 @@
  */
 #include "engine/image/backend.hpp"
 #include "engine/image/display.hpp"
+#include "engine/scene/lens_table.hpp"
 
 #include <heliograph/camera.hpp>
 
@@ -43,6 +44,12 @@ ThinLens thinLens(const Camera&, double fNumber, double focusDistance, double) {
     ThinLens lens;
     lens.apertureDiameter = float(1 / fNumber);
     lens.focusDistance = float(focusDistance);
+    return lens;
+}
+
+ParaxialLens paraxial(const LensTable&) {
+    ParaxialLens lens;
+    lens.focalLength = lens.filmDistance = 1;
     return lens;
 }
 
