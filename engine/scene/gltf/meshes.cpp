@@ -127,10 +127,22 @@ private:
      * than half of them, only those are kept, in their order. */
     void keepUsedVertices(Primitive& primitive) {
         kept_.clear();
-        memory_.take(place_, 0, primitive.indices.size() * sizeof(std::uint32_t));
-        kept_ = primitive.indices;
-        std::sort(kept_.begin(), kept_.end());
-        kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
+        if (primitive.indices.size() < size_) {  // few: sorted, in time that does not depend on the file
+            memory_.take(place_, 0, primitive.indices.size() * sizeof(std::uint32_t));
+            kept_ = primitive.indices;
+            std::sort(kept_.begin(), kept_.end());
+            kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
+        } else {
+            std::vector<bool> isUsed(size_, false);
+            for (const std::uint32_t index : primitive.indices) isUsed[index] = true;
+            const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), true));
+            if (used >= size_ - used) return;
+            memory_.take(place_, 0, used * sizeof(std::uint32_t));
+            kept_.reserve(used);
+            for (std::size_t i = 0; i < size_; ++i) {
+                if (isUsed[i]) kept_.push_back(std::uint32_t(i));
+            }
+        }
         if (kept_.size() >= size_ - kept_.size()) {
             kept_.clear();
             return;
