@@ -43,10 +43,10 @@ struct PathTraceOptions {
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;
     LightChoice lights = LightChoice::Adaptive;
-    ShutterTimes shutter;  ///< where something moves
+    ShutterTimes shutter = {};  ///< where something moves
     /** Node to world at times evenly over what is rendered, where the camera moves; the first is the one that
      * the tracer is given. */
-    std::vector<glm::dmat4> cameraPoses;
+    std::vector<glm::dmat4> cameraPoses = {};
     std::uint32_t seed = 0;
     bool adaptive = false;  ///< each pixel has its own number of samples, see setSampleEnds()
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
