@@ -135,9 +135,12 @@ TEST_F(GltfCameraExtras, WhatDoesNotGoTogetherIsRefused) {
 
 /** Every property of a camera has an example, which the loader takes. */
 TEST_F(GltfCameraExtras, ExamplesOfTheSchemaLoad) {
-    for (const auto& [name, property] : schema()["definitions"]["camera"]["properties"].items()) {
+    const json whole = schema();
+    for (const auto& [name, property] : whole["definitions"]["camera"]["properties"].items()) {
         ASSERT_TRUE(property.contains("examples")) << name;
-        EXPECT_NO_THROW(withCamera({{name, property["examples"][0]}})) << name;
+        json look = {{name, property["examples"][0]}};
+        if (name == "fieldOfView") look["projection"] = "equidistant";
+        EXPECT_NO_THROW(withCamera(look)) << name;
     }
 }
 
