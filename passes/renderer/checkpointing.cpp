@@ -26,11 +26,11 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             camera += fmt::format(" {} {} {} {}", s.radius, s.thickness, s.ior, s.diameter);
     }
     camera += fmt::format(" {} {}", view.shutter.rolling, view.shutter.open);
-    for (const glm::dmat4& pose : view.poses)
-        camera += fmt::format(" {} {} {}", pose[0][0] + 2 * pose[0][1], pose[1][1] + 2 * pose[1][2],
-                              pose[3][0] + 2 * pose[3][1] + 3 * pose[3][2]);
-    for (glm::length_t c = 0; c < 4; ++c)
-        for (glm::length_t r = 0; r < 3; ++r) camera += fmt::format(" {}", view.transform[c][r]);
+    std::vector<glm::dmat4> places = view.poses;
+    places.push_back(view.transform);
+    for (const glm::dmat4& place : places)
+        for (glm::length_t c = 0; c < 4; ++c)
+            for (glm::length_t r = 0; r < 3; ++r) camera += fmt::format(" {}", place[c][r]);
     return {{"version", std::string(version())},
             {"device", device.name},
             {"scene", fmt::format("{:016x}{:016x}", scene.words[0], scene.words[1])},
