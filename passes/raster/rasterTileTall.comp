@@ -1,4 +1,4 @@
-// The tile kernel  with 32 invocations a tile: for wide subgroups.
+// The tile kernel with 16 invocations a tile, of eight rows each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require

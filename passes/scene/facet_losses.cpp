@@ -31,7 +31,8 @@ double escaping(const Microfacets& m, const glm::dvec3& wo, const glm::dvec3& wi
 }
 
 /** Integral over [0, 1] of 2 c f(c) by the trapezoids' linear cells in x = sqrt(c), 2 c dc = 4 x^3 dx, by
- * Simpson's rule, which is exact for them: what is put back is then what the table says is lost. */
+ * Simpson's rule, which is nearly exact for these quartics: what is put back is then what the table says is
+ * lost. */
 double meanOfNodes(const std::array<double, kLossNodes>& values) {
     double mean = 0;
     for (std::size_t i = 0; i + 1 < values.size(); ++i) {
