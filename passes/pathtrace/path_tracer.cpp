@@ -1,5 +1,6 @@
 #include "passes/pathtrace/path_tracer.hpp"
 
+#include "passes/pathtrace/bounce_layers.hpp"
 #include "passes/pathtrace/camera_frame.hpp"
 #include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
@@ -136,6 +137,13 @@ struct PathTracer::Impl {
             sampleEnds_.emplace(makeBuffer(device_, "pathtrace.sampleEnds", none));
             ends.push_back({"uSampleEnds", graph.import(*sampleEnds_), Format::R32UI});
         }
+        std::vector<Binding> bounces;
+        if (options_.bounces >= 0) {
+            bounces_.emplace(device_, options_.size, options_.bounces);
+            defines.merge(bounces_->defines());
+            spec.merge(bounces_->constants());
+            bounces.push_back({"uBounces", bounces_->import(graph)});
+        }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         const bool usesStrata =
@@ -154,6 +162,7 @@ struct PathTracer::Impl {
             .reads(cameraBinding(graph))
             .reads(ends)
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
+            .modifies(bounces)
             .record([this](Commands& commands) {
                 const auto groups = groupsFor(options_.size);
                 commands.push(parameters_).dispatch(groups[0], groups[1]);
@@ -235,6 +244,7 @@ struct PathTracer::Impl {
     DeviceImage state_;
     DeviceBuffer counters_;
     std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
+    std::optional<BounceLayers> bounces_;
     TraceParameters parameters_{};
     TraceKernel traceKernel_;
     Plan plan_;
@@ -298,6 +308,11 @@ Image PathTracer::importState(Graph& graph) {
 
 FirstHits PathTracer::firstHits() {
     return impl_->firstHits();
+}
+
+std::vector<std::vector<float>> PathTracer::bounceLayers(const std::vector<float>& film) {
+    assert(impl_->bounces_);
+    return impl_->bounces_->means(film);
 }
 
 std::vector<PassTiming> PathTracer::timings() const {

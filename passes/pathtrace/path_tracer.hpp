@@ -49,6 +49,7 @@ struct PathTraceOptions {
     std::vector<glm::dmat4> cameraPoses = {};
     std::uint32_t seed = 0;
     bool adaptive = false;  ///< each pixel has its own number of samples, see setSampleEnds()
+    int bounces = -1;       ///< light of up to so many scatterings is also summed apart, see bounceLayers()
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */
     std::uint32_t turnBudget = 30000;
@@ -105,6 +106,9 @@ public:
     void setCounters(const PathCounters& counters);
     Image importState(Graph& graph);
     FirstHits firstHits();
+
+    /** With PathTraceOptions::bounces: see BounceLayers::means(). */
+    std::vector<std::vector<float>> bounceLayers(const std::vector<float>& film);
 
     /** Device times of all dispatches so far, by pass. */
     std::vector<PassTiming> timings() const;

@@ -17,6 +17,9 @@
 #include "shaders/film/film.glsl"
 #include "shaders/film/filter.glsl"
 #include "shaders/intersection/scene_hit.glsl"
+#ifdef BOUNCES
+#include "passes/pathtrace/bounces.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -126,6 +129,9 @@ void main() {
 #else
     const uint sampleEnd = parameters.sampleEnd;
 #endif
+#ifdef BOUNCES
+    if (inside && begin) clearBounces(pixel, parameters.size);
+#endif
     uint cameraRays = 0u, bounceRays = 0u, shadowRays = 0u, cutPaths = 0u, abandonedRays = 0u;
     cameraRays += inside && !resumed && sampleIndex < sampleEnd ? 1u : 0u;
     uint spent = 0u;
@@ -138,11 +144,22 @@ void main() {
         const int closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
         bool cut;
         ShadowRay shadow;
+#ifdef BOUNCES
+        const uint depth = path.depth;
+        const vec3 before = path.radiance;
+        path.radiance = vec3(0.0);
+#endif
         bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, parameters.environment.xyz, shadow, cut);
         bool blocked;
         float passes;
         const int shadowTurns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
-        path.radiance += shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
+        const vec3 direct = shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
+#ifdef BOUNCES
+        addBounce(pixel, parameters.size, depth, path.radiance);
+        addBounce(pixel, parameters.size, depth + 1u, direct);
+        path.radiance += before;
+#endif
+        path.radiance += direct;
 
 #ifdef CAMERA_TABLE
         alive = alive && largestOf(path.throughput) > 0.0;  // where the camera sees nothing
@@ -168,6 +185,9 @@ void main() {
     if (inside) {
         if (finished) {
             storeFilm(filmPixel, mergeFilmBatch(stored, batch));
+#ifdef BOUNCES
+            mergeBounces(pixel, parameters.size);
+#endif
             imageStore(uState, place, vec4(0.0, 0.0, 0.0, float(path.sampleIndex)));
             imageStore(uState, place + ivec2(3, 1), vec4(0.0));
         } else {

@@ -3,6 +3,7 @@
 #include "engine/film/sample_allocation.hpp"
 #include "engine/film/variance.hpp"
 #include "passes/denoise/denoise.hpp"
+#include "passes/pathtrace/bounce_layers.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/sample_schedule.hpp"
@@ -169,6 +170,13 @@ void addFirstHits(Frame& frame, const FirstHits& hits) {
     frame.add({"id.triangle"}, triangle.data(), 1);
 }
 
+void addBounces(Frame& frame, const std::vector<std::vector<float>>& layers) {
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        const std::string name = k + 1 < layers.size() ? fmt::format("bounce.{}", k) : "bounce.rest";
+        frame.add({name + ".R", name + ".G", name + ".B"}, layers[k].data(), 3);
+    }
+}
+
 void noteCounters(const PathCounters& counters, RenderResult& result) {
     result.rays = {counters.cameraRays, counters.bounceRays, counters.shadowRays};
     result.truncatedPaths = counters.truncatedPaths;
@@ -224,13 +232,19 @@ std::vector<PassTiming> timingsSince(const std::vector<PassTiming>& before, std:
 
 }  // namespace
 
-void checkPathSize(const std::array<std::uint32_t, 2>& size) {
+void checkPathSize(const RenderOptions& options) {
+    const std::array<std::uint32_t, 2>& size = options.size;
     // The path tracer keeps 4 x 2 texels of state per pixel, the film 2 x 3, in images of at most 16384
     // texels.
-    if (size[0] <= 4096 && size[1] <= kMaxFilmHeight) return;
-    throw InputError("", "size",
-                     fmt::format("{}x{} pixels are too many for the path pipeline", size[0], size[1]),
-                     fmt::format("give at most 4096x{}", kMaxFilmHeight));
+    if (size[0] > 4096 || size[1] > kMaxFilmHeight)
+        throw InputError("", "size",
+                         fmt::format("{}x{} pixels are too many for the path pipeline", size[0], size[1]),
+                         fmt::format("give at most 4096x{}", kMaxFilmHeight));
+    const int most = BounceLayers::most(size);
+    if (options.bounces > most)
+        throw InputError("", "bounces",
+                         fmt::format("{} bounces apart at {}x{} pixels", options.bounces, size[0], size[1]),
+                         fmt::format("give at most {}", most));
 }
 
 PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTimes& shutter) {
@@ -255,6 +269,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
     result.shutter = shutter;
     result.seed = options.seed;
     result.adaptive = options.adaptive;
+    result.bounces = int(options.bounces);
     return result;
 }
 
@@ -297,6 +312,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
         frame.add({"variance.R", "variance.G", "variance.B"}, variance.data(), 4);
         frame.add({"samples"}, film.mean.data(), 4, 3);
     }
+    if (job.options.bounces >= 0) addBounces(frame, tracer.bounceLayers(film.mean));
     result.image = frame.image();
     for (std::size_t i = 3; i < film.variance.size(); i += 4)
         result.nanCount += std::uint64_t(film.variance[i]);

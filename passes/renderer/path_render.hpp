@@ -7,8 +7,8 @@
 
 namespace helio {
 
-/** Throws InputError for a size that the path pipeline cannot hold. */
-void checkPathSize(const std::array<std::uint32_t, 2>& size);
+/** Throws InputError for a size that the path pipeline cannot hold, by itself or with so many bounces. */
+void checkPathSize(const RenderOptions& options);
 /** The path tracer's options for a render. */
 PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTimes& shutter = {});
 

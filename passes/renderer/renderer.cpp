@@ -81,6 +81,10 @@ void check(const RenderOptions& options) {
            fmt::format("{} samples per pixel, of which some pixels would take 16 times as many",
                        options.samples),
            "give at most 1048575");
+    refuse(options.bounces >= 0 && options.pipeline == Pipeline::Raster, "bounces",
+           "the raster pipeline has direct light alone", "leave it out");
+    refuse(options.bounces >= 0 && !options.checkpoint.empty(), "bounces",
+           "a checkpoint does not keep light by its bounces", "leave one of them out");
     refuse(options.resume && options.checkpoint.empty(), "resume", "there is no checkpoint to resume from",
            "name the file as checkpoint");
     refuse(options.pipeline == Pipeline::Raster && !options.checkpoint.empty(), "checkpoint",
@@ -200,7 +204,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderJob job(options);
     RenderResult& result = job.result;
     check(options);
-    if (options.pipeline == Pipeline::Path) checkPathSize(options.size);
+    if (options.pipeline == Pipeline::Path) checkPathSize(options);
     Motion motion = motionOf(scene, options);
     std::optional<Scene>& still = motion.first;  // only a scene that moves is copied
     check(options.environment, scene);

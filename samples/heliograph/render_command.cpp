@@ -171,6 +171,9 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         if (options.integrator == Integrator::Whitted && !options.nextEventEstimation) {
             throw CLI::ValidationError("--no-nee", "leaves --integrator whitted without direct light");
         }
+        if (options.bounces >= 0 && !options.checkpoint.empty()) {
+            throw CLI::ValidationError("--bounces", "is not kept by a --checkpoint; leave one of them out");
+        }
         if (options.cullBackFaces) {
             throw CLI::ValidationError("--cull", "back is there for --pipeline raster only, so far");
         }
@@ -183,9 +186,9 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         throw CLI::ValidationError("--shadow-resolution", "has no effect on --shadows none; leave it out");
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
-    for (const char* option :
-         {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
-          "--sampler", "--integrator", "--lights", "--no-nee", "--accelerator", "--checkpoint", "--resume"}) {
+    for (const char* option : {"--time", "--max-error", "--adaptive", "--denoise", "--error-map",
+                               "--max-depth", "--filter", "--sampler", "--integrator", "--lights", "--no-nee",
+                               "--accelerator", "--bounces", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -278,6 +281,9 @@ int render(const CLI::App& command, RenderArguments& arguments) {
 
     // Only EXR files hold more than the picture: without one, the pass of first hits is not even compiled.
     options.auxiliary = std::ranges::any_of(arguments.outputs, holdsEveryChannel);
+    if (options.bounces >= 0 && !options.auxiliary)
+        throw CLI::ValidationError("--bounces",
+                                   "has no effect without an image that holds it; name a .exr with -o");
 
     handleInterrupts();
     ProgressDisplay display(arguments.quiet);
@@ -487,6 +493,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
             "Radius of punctual lights for pcss; of directional ones the tangent of their half angle")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    command
+        ->add_option(
+            "--bounces", options.bounces,
+            "Also write the light that scattered 0, 1, ... N times and more often, apart, into .exr images")
+        ->check(CLI::Range(0, 64));
     command->add_flag("--denoise", options.denoise,
                       "Also write each image filtered, as NAME.denoised.EXT: smoother, and biased");
     command->add_option(

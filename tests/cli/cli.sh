@@ -67,12 +67,13 @@ expect 'a size of lights without pcss is refused' 2 'light-size: is there for' "
 expect 'a checkpoint in no folder is refused before rendering' 1 'no-such-folder' "$program" render sample:cornell --checkpoint no-such-folder/x
 expect 'a tone curve without an image to show' 2 'tonemap: has no effect' "$program" render sample:cornell --tonemap aces -o a.exr
 expect 'an unknown tone curve' 2 'none, reinhard, filmic, aces' "$program" render sample:cornell --tonemap acid -o a.png
+expect 'bounces without an image that holds them' 2 'bounces: has no effect' "$program" render sample:cornell --bounces 1 -o a.png
 expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
 expect 'too many samples' 2 '16777215' "$program" render sample:cornell --spp 16777216
 expect 'a path render culls nothing' 2 'raster only' render --cull back
-for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee --adaptive --denoise '--error-map map.png'; do
+for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee --adaptive --denoise '--error-map map.png' '--bounces 1'; do
     # shellcheck disable=SC2086
     expect "raster refuses $option" 2 "${option%% *}: is there for --pipeline path only" render --pipeline raster $option
 done

@@ -119,11 +119,11 @@ struct RenderOptions {
     LightChoice lights = LightChoice::Adaptive;
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
     std::uint32_t seed = 0;
-    std::string camera;                      ///< name or index; empty for the first
-    double frameTime = 0;                    ///< seconds; the scene is shown as posed() makes it
-    std::string animation;                   ///< name, index or "none"; empty for the first
-    /** Seconds from frameTime on between which the shutter is open, in place of the camera's. The path pipeline
-     * shows what moves meanwhile; the raster pipeline shows the pose in which it opens. */
+    std::string camera;     ///< name or index; empty for the first
+    double frameTime = 0;   ///< seconds; the scene is shown as posed() makes it
+    std::string animation;  ///< name, index or "none"; empty for the first
+    /** Seconds from frameTime on between which the shutter is open, in place of the camera's. The path
+     * pipeline shows what moves meanwhile; the raster pipeline shows the pose in which it opens. */
     std::optional<std::array<double, 2>> shutter;
     /** Straight lines in which a vertex goes while the shutter is open; cameras turn smoothly. */
     std::uint32_t motionSteps = 1;
@@ -140,6 +140,11 @@ struct RenderOptions {
      * least. */
     bool denoise = false;
     bool errorMap = false;  ///< path pipeline: also RenderResult::errorMap
+    /** Path pipeline: also the image's light by how often it scattered, the terms E, K E, K^2 E, ... of the
+     * rendering equation's series: channels bounce.0.R .. bounce.N.B for 0 to N = bounces scatterings, and
+     * bounce.rest.R .. for more; they sum to R G B. Negative: none. Up to 64, fewer for large images. Not
+     * with a checkpoint. */
+    std::int32_t bounces = -1;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
      * rarely, so that it takes a twentieth of the time at most), when it is cancelled and when it ends;
