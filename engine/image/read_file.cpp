@@ -13,17 +13,28 @@
 namespace helio {
 
 FileSource::FileSource(const std::filesystem::path& file) : file_(file) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) {
-        const bool exists = std::filesystem::exists(file, error);
-        throw InputError(file.string(), "", exists ? "is no regular file" : "does not exist", "give a file");
-    }
-    descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const auto refuseIrregular = [&] {
+        throw InputError(file.string(), "", "is no regular file", "give a file");
+    };
     struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) {
+        const bool isMissing = errno == ENOENT || errno == ENOTDIR;
+        throw InputError(
+            file.string(), "",
+            isMissing ? "does not exist" : std::string("cannot be read: ") + std::strerror(errno),
+            "give a file that can be read");
+    }
+    if (!S_ISREG(status.st_mode)) refuseIrregular();  // to open a device may already do something
+    // A pipe that took the file's place meanwhile would wait for a writer.
+    descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
         const std::string reason = std::strerror(errno);
         if (descriptor_ >= 0) ::close(descriptor_);
         throw InputError(file.string(), "", "cannot be opened: " + reason, "give a file that can be read");
+    }
+    if (!S_ISREG(status.st_mode)) {
+        ::close(descriptor_);
+        refuseIrregular();
     }
     size_ = std::uint64_t(status.st_size);
 }

@@ -10,6 +10,13 @@ import good_files as good
 CASES = []  # (name, {file name: content}); the first file is the one to open
 
 
+class Link(str):
+    """A file that is a symbolic link, to this."""
+
+
+PIPE = object()  # a file that is a pipe which nobody writes into
+
+
 def case(name, content, extension, **others):
     files = {"scene." + extension: content}
     files.update({key.replace("__", "."): value for key, value in others.items()})
@@ -298,6 +305,13 @@ def gltf_files():
     for name, uri in escapes:
         gltf("image-" + name, image(uri))
         case("buffer-" + name, buffer_uri(uri), "gltf")
+    for name, content in (("pipe", PIPE), ("link-out", Link("../secret")), ("link-absolute", Link("/etc/hostname")),
+                          ("link-device", Link("/dev/zero")), ("link-itself", Link("other.bin")),
+                          ("link-nowhere", Link("nothere"))):
+        gltf("image-" + name, image("other.bin"), other__bin=content)
+        case("buffer-" + name, buffer_uri("other.bin"), "gltf", other__bin=content)
+    for name, content in (("pipe", PIPE), ("link-device", Link("/dev/zero")), ("link-itself", Link("scene.gltf"))):
+        case("scene-is-" + name, content, "gltf")
     case("buffer-short", buffer_uri("short.bin"), "gltf", short__bin=DATA[:-8])
     case("buffer-longer-than-file", buffer_uri("data.bin", 2 ** 40), "gltf", data__bin=DATA)
     for name, uri in (("no-comma", "data:application/octet-stream;base64"), ("garbage", good.data_uri(DATA)[:-20] + "!?*"),
@@ -417,6 +431,9 @@ def obj_files():
     obj("map-bomb", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\nmap_Kd bomb.png\n", bomb__png=bomb(8000, 8000, b"\1"))
     webp = b"RIFF\x1e\0\0\0WEBPVP8L\x0a\0\0\0\x2f" + struct.pack("<I", 16382 | 16382 << 14) + b"\0" * 9
     obj("map-webp-bomb", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\nmap_Kd bomb.webp\n", bomb__webp=webp)
+    for name, content in (("pipe", PIPE), ("link-out", Link("../secret"))):
+        obj("mtllib-is-" + name, b"mtllib scene.mtl\n" + use, scene__mtl=content)
+        obj("map-is-" + name, b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl a\nmap_Kd map.png\n", map__png=content)
     obj("mtl-empty", b"mtllib scene.mtl\n" + use, scene__mtl=b"")
     obj("mtl-binary", b"mtllib scene.mtl\n" + use, scene__mtl=bytes(range(256)) * 20)
     obj("mtl-other-name", b"mtllib scene.mtl\n" + use, scene__mtl=b"newmtl b\nKd 1 1 1\n")

@@ -16,15 +16,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import good_files
 import malformed
 
 ALLOWANCE = 256 << 20
-TIMEOUT = 20
+TIMEOUT = 20  # seconds of processor time
+WALL = 300  # seconds for what waits, on a machine however busy
 # Faults that have no place but the file.
-WHOLE_FILE = ("is empty", "is no scene that can be read", "its JSON is no object")
+WHOLE_FILE = ("is empty", "is no scene that can be read", "its JSON is no object", "is no regular file", "does not exist")
 
 parser = argparse.ArgumentParser()
 parser.add_argument("build")
@@ -43,7 +45,10 @@ def run(folder, *command):
     with open(out, "wb") as out_file, open(err, "wb") as err_file:
         child = subprocess.Popen([program, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=out_file,
                                  stderr=err_file, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT, TIMEOUT)))
+        watch = threading.Timer(WALL, child.kill)
+        watch.start()
         _, status, usage = os.wait4(child.pid, 0)
+        watch.cancel()
         child.returncode = os.waitstatus_to_exitcode(status)
     return Ended(child.returncode, out.read_text(errors="replace"), err.read_text(errors="replace"),
                  usage.ru_maxrss * 1024)
@@ -80,9 +85,14 @@ def check(case):
     folder = work / name
     folder.mkdir(parents=True)
     for file, content in files.items():
-        (folder / file).write_bytes(content)
+        if content is malformed.PIPE:
+            os.mkfifo(folder / file)
+        elif isinstance(content, malformed.Link):
+            (folder / file).symlink_to(content)
+        else:
+            (folder / file).write_bytes(content)
     file = next(iter(files))
-    size = sum(len(content) for content in files.values())
+    size = sum(len(content) for content in files.values() if isinstance(content, bytes))
     limit = base_memory + 2 * size + ALLOWANCE
     info = run(folder, "info", file)
     faults = []
@@ -119,6 +129,7 @@ def check(case):
 
 work = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="heliograph_hostile_")).resolve()
 work.mkdir(parents=True, exist_ok=True)
+(work / "secret").write_bytes(good_files.png())
 try:
     document, data = good_files.gltf()
     good = {".gltf": good_files.gltf_text(document, data), ".glb": good_files.glb(document, data), ".obj": good_files.OBJ,

@@ -1,5 +1,7 @@
 #include "tests/unit/gltf_support.hpp"
 
+#include <sys/stat.h>
+
 #include <set>
 
 namespace helio::test {
@@ -52,6 +54,76 @@ TEST_F(Gltf, LoadingStopsWhereverItIsAskedTo) {
         } catch (const Cancelled&) {
             EXPECT_EQ(calls, allowed + 1) << "asked again after it was told to stop";
         }
+    }
+}
+
+/** What is said where the scene's buffer file cannot be had; empty where the scene loads. */
+std::string faultOf(const fs::path& scene) {
+    try {
+        helio::load(scene.string());
+    } catch (const InputError& error) {
+        return error.fault;
+    }
+    return {};
+}
+
+TEST_F(Gltf, SymbolicLinksStayInTheFolder) {
+    const GltfDocument file = GltfDocument::triangle();
+    json document = file.doc;
+    document["buffers"] = {{{"byteLength", file.buffer.size()}, {"uri", "data.bin"}}};
+    const fs::path inside = folder_ / "inside", parts = inside / "parts", scene = inside / "scene.gltf";
+    fs::create_directories(parts);
+    write("outside.bin", file.buffer);
+    write("inside/parts/real.bin", file.buffer);
+    write("inside/scene.gltf", document.dump());
+    const std::string out = "'data.bin' leads out of the scene's folder by a symbolic link";
+    const auto lead = [&](const fs::path& target) {
+        fs::remove(inside / "data.bin");
+        fs::create_symlink(target, inside / "data.bin");
+    };
+    lead("parts/real.bin");
+    EXPECT_EQ(faultOf(scene), "");
+    for (const fs::path& target :
+         {fs::path("../outside.bin"), folder_ / "outside.bin", fs::path("/dev/zero")}) {
+        lead(target);
+        EXPECT_EQ(faultOf(scene), out) << target;
+    }
+    for (const char* target : {"data.bin", "nowhere.bin"}) {
+        lead(target);
+        EXPECT_NE(faultOf(scene), "") << target;
+    }
+    // A folder that is a link itself, and a scene that is one, to a folder with all that it needs.
+    lead("parts/real.bin");
+    fs::create_directory_symlink(inside, folder_ / "other");
+    EXPECT_EQ(faultOf(folder_ / "other/scene.gltf"), "");
+    fs::create_directory(folder_ / "links");
+    fs::create_symlink(scene, folder_ / "links/scene.gltf");
+    fs::create_symlink(inside / "data.bin", folder_ / "links/data.bin");
+    EXPECT_EQ(faultOf(folder_ / "links/scene.gltf"), "");
+    fs::remove(folder_ / "links/data.bin");
+    fs::create_symlink("../outside.bin", folder_ / "links/data.bin");
+    EXPECT_EQ(faultOf(folder_ / "links/scene.gltf"), out);
+    // A folder on the way.
+    fs::remove(inside / "data.bin");
+    fs::create_directory_symlink(folder_, inside / "up");
+    document["buffers"][0]["uri"] = "up/outside.bin";
+    write("inside/scene.gltf", document.dump());
+    EXPECT_EQ(faultOf(scene), "'up/outside.bin' leads out of the scene's folder by a symbolic link");
+}
+
+TEST_F(Gltf, PipesAndDevicesAreNoFiles) {
+    json document = GltfDocument::triangle().doc;
+    document["buffers"] = {{{"byteLength", 36}, {"uri", "data.bin"}}};
+    const fs::path scene = write("scene.gltf", document.dump());
+    ASSERT_EQ(::mkfifo((folder_ / "data.bin").c_str(), 0600), 0);
+    EXPECT_EQ(faultOf(scene), "'data.bin' is no regular file");
+    for (const char* extension : {".gltf", ".glb", ".obj", ".ply", ".stl"}) {
+        const fs::path pipe = folder_ / (std::string("pipe") + extension);
+        ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+        EXPECT_EQ(faultOf(pipe), "is no regular file") << extension;
+        const fs::path device = folder_ / (std::string("device") + extension);
+        fs::create_symlink("/dev/zero", device);
+        EXPECT_EQ(faultOf(device), "is no regular file") << extension;
     }
 }
 

@@ -134,7 +134,7 @@ Environment environmentOf(const std::string& file, const std::string& pointer, c
                          "give a path relative to that folder and below it");
     }
     try {
-        scene.images.push_back(loadTextureImage(std::filesystem::path(file).parent_path() / *path));
+        scene.images.push_back(loadTextureImage(fileBelow(file, *path)));
     } catch (const InputError& error) {
         throw InputError(file, pointer + "/image", error.fault, error.remedy);
     }

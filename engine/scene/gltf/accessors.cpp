@@ -84,7 +84,7 @@ Asset::Asset(Container container)
             if (known != loaded.end()) {
                 bytes = known->second;
             } else {
-                bytes = owned_.emplace_back(readUri(file(), place + ".uri", folder(), uri));
+                bytes = owned_.emplace_back(readUri(file(), place + ".uri", uri));
                 bytes_ += bytes.size();
                 if (uri.starts_with("data:")) {
                     uri = std::string();  // a third more than its bytes, which are there now
@@ -123,10 +123,6 @@ std::vector<std::string> Asset::misaligned() const {
             places.push_back(fmt::format("accessors[{}]", i));
     }
     return places;
-}
-
-std::filesystem::path Asset::folder() const {
-    return std::filesystem::path(file()).parent_path();
 }
 
 std::span<const std::byte> Asset::bufferView(int index) const {

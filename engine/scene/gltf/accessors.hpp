@@ -4,7 +4,6 @@
 #include "engine/scene/gltf/lists.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <list>
 #include <set>
 #include <span>
@@ -24,7 +23,6 @@ public:
     const std::string& file() const { return container_.file; }
     const nlohmann::json& document() const { return container_.document; }
     const Accessor& accessor(int index) const { return accessors_[std::size_t(index)]; }
-    std::filesystem::path folder() const;
 
     /** The bytes of a buffer view; checked against its buffer. */
     std::span<const std::byte> bufferView(int index) const;

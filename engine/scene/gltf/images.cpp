@@ -24,7 +24,7 @@ int ImageLoader::use(int image) {
     if (json.contains("uri")) {
         const auto& uri = json["uri"].get_ref<const std::string&>();
         if (source.name.empty() && !uri.starts_with("data:")) source.name = uri;
-        source.owned = readUri(asset_.file(), place + ".uri", asset_.folder(), uri);
+        source.owned = readUri(asset_.file(), place + ".uri", uri);
         source.bytes = source.owned;
     } else if (json.contains("bufferView")) {
         source.bytes = asset_.bufferView(json["bufferView"].get<int>());

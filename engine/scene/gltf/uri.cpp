@@ -1,6 +1,7 @@
 #include "engine/scene/gltf/uri.hpp"
 
 #include "engine/image/read_file.hpp"
+#include "engine/scene/folder.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -86,8 +87,7 @@ bool decodeBase64(std::string_view text, std::vector<std::byte>& bytes) {
     return true;
 }
 
-std::vector<std::byte> readUri(const std::string& file, const std::string& place,
-                               const std::filesystem::path& folder, const std::string& uri) {
+std::vector<std::byte> readUri(const std::string& file, const std::string& place, const std::string& uri) {
     if (uri.starts_with("data:")) return readDataUri(file, place, uri);
     const std::string shown = uri.substr(0, 100);
     if (hasScheme(uri)) {
@@ -101,7 +101,7 @@ std::vector<std::byte> readUri(const std::string& file, const std::string& place
                          "give a path relative to that folder and below it");
     }
     try {
-        return readFile(folder / path);
+        return readFile(fileBelow(file, path));
     } catch (const InputError& error) {
         throw InputError(file, place, "'" + shown + "' " + error.fault, "put the file beside the glTF file");
     }

@@ -1,7 +1,6 @@
 #pragma once
 /** @file What a URI in a glTF file leads to: inline data, or a file in the document's folder. */
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +11,9 @@ namespace helio::gltf {
 bool decodeBase64(std::string_view text, std::vector<std::byte>& bytes);
 
 /**
- * The bytes behind a URI. Files must lie in `folder` or below: an absolute path, "..", or another scheme is
- * refused. Throws InputError(file, place, ...).
+ * The bytes behind a URI. Files must lie in the folder of `file` or below: an absolute path, "..", a symbolic
+ * link out of it, or another scheme is refused. Throws InputError(file, place, ...).
  */
-std::vector<std::byte> readUri(const std::string& file, const std::string& place,
-                               const std::filesystem::path& folder, const std::string& uri);
+std::vector<std::byte> readUri(const std::string& file, const std::string& place, const std::string& uri);
 
 }  // namespace helio::gltf

@@ -46,17 +46,21 @@ public:
 
 private:
     bool readOne(std::string_view name, bool mayWarn) {
-        const auto complain = [&](const char* what) {
+        const auto complain = [&](std::string_view what) {
             if (mayWarn)
                 warn(scene_, fmt::format("material file {} {}; its materials are white", shown(name), what));
             return false;
         };
         const std::optional<fs::path> path = pathBelow(name);
         if (!path) return complain("leads out of the file's folder");
-        const fs::path file = fs::path(file_).parent_path() / *path;
-        std::error_code error;
-        if (!fs::is_regular_file(file, error)) return complain("is not there");
-        const std::vector<std::byte> bytes = readFile(file);
+        fs::path file;
+        std::vector<std::byte> bytes;
+        try {
+            file = fileBelow(file_, *path);
+            bytes = readFile(file);
+        } catch (const InputError& error) {
+            return complain(error.fault);
+        }
         parse(file.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
         return true;
     }
@@ -100,7 +104,7 @@ private:
 void loadMaterials(const std::string& file, const std::vector<std::string>& libraries,
                    const std::vector<std::string>& names, bool hasColors, LoadMonitor& monitor,
                    Scene& scene) {
-    TextureFiles textures(fs::path(file).parent_path(), scene);
+    TextureFiles textures(file, scene);
     Library library(file, names, textures, scene);
     for (const std::string& name : libraries) library.read(name);
     for (std::size_t i = 0; i < names.size(); ++i) {

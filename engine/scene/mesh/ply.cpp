@@ -279,7 +279,7 @@ private:
             warn(scene_, "some normals have no length: the mesh is shaded flat");
             primitive_.normals = {};
         }
-        TextureFiles textures(std::filesystem::path(file_).parent_path(), scene_);
+        TextureFiles textures(file_, scene_);
         if (!header_.texture.empty() && !primitive_.texcoords.empty()) {
             material.baseColorTexture.texture = textures.texture(header_.texture, false);
             if (material.baseColorTexture) material.baseColor = glm::vec4(1);

@@ -49,7 +49,7 @@ int TextureFiles::read(const std::string& name) {
     EncodedImage image;
     image.place = image.name = name;
     try {
-        image.owned = readFile(folder_ / *path);
+        image.owned = readFile(fileBelow(file_, *path));
     } catch (const InputError& error) {
         warn(scene_, fmt::format("texture {} {}; left out", shown(name), error.fault));
         return -1;

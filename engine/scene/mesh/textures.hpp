@@ -5,7 +5,6 @@
 
 #include <heliograph/scene.hpp>
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -17,7 +16,7 @@ namespace helio::mesh {
  * is a warning. */
 class TextureFiles {
 public:
-    TextureFiles(std::filesystem::path folder, Scene& scene) : folder_(std::move(folder)), scene_(scene) {}
+    TextureFiles(const std::string& file, Scene& scene) : file_(file), scene_(scene) {}
 
     /** Into Scene::textures; -1 for a file that is not there. */
     int texture(const std::string& name, bool isClamped);
@@ -27,7 +26,7 @@ public:
 private:
     int read(const std::string& name);
 
-    std::filesystem::path folder_;
+    const std::string& file_;  ///< the mesh
     Scene& scene_;
     std::map<std::pair<std::string, bool>, int> textures_;
     std::map<std::string, int> files_;

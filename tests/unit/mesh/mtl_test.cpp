@@ -94,6 +94,21 @@ TEST_F(Mtl, Textures) {
     EXPECT_EQ(scene.skipped[0].first, "MTL bump");
 }
 
+TEST_F(Mtl, LinksOutOfTheFolderWarn) {
+    fs::create_directory(folder_ / "inside");
+    write("secret.png", "");
+    write("secret.mtl", "newmtl a\nKd 1 0 0\n");
+    for (const char* name : {"map.png", "other.mtl"})
+        fs::create_symlink(std::string("../secret") + fs::path(name).extension().string(),
+                           folder_ / "inside" / name);
+    write("inside/scene.mtl", "newmtl b\nmap_Kd map.png\n");
+    const Scene scene = load("inside/scene.obj",
+                             "mtllib other.mtl\nmtllib scene.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+                             "usemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n");
+    EXPECT_TRUE(mentions(scene.warnings, "'other.mtl' leads out of the scene's folder by a symbolic link"));
+    EXPECT_TRUE(mentions(scene.warnings, "'map.png' leads out of the scene's folder by a symbolic link"));
+}
+
 TEST_F(Mtl, TexturesThatAreNotThereWarn) {
     write("no.png", "not an image");
     const Scene scene =

@@ -116,7 +116,7 @@ TEST_F(MeshFile, ObjMaterialsPartTheMesh) {
     EXPECT_EQ(scene.warnings.size(), 1u);
     EXPECT_TRUE(mentions(scene.warnings, "'nowhere' is nowhere defined"));
     const Scene missing = load("b.obj", "mtllib no.mtl\nmtllib ../a.mtl\n" + square + "usemtl x\nf 1 2 3\n");
-    EXPECT_TRUE(mentions(missing.warnings, "'no.mtl' is not there"));
+    EXPECT_TRUE(mentions(missing.warnings, "'no.mtl' does not exist"));
     EXPECT_TRUE(mentions(missing.warnings, "leads out"));
 }
 
