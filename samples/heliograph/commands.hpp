@@ -14,5 +14,6 @@ using Command = std::function<int()>;
 void addRenderCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
+void addBenchCommand(CLI::App& app, Command& run);
 
 }  // namespace helio::cli

@@ -26,7 +26,7 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
         const std::string& first = unknown.front();
         if (first.rfind('-', 0) == 0) return first + " is not known here";
         if (hasCommand) return fmt::format("there is no use for '{}' here", first);
-        return fmt::format("there is no command '{}'; there are render, compare, info", first);
+        return fmt::format("there is no command '{}'; there are render, compare, info, bench", first);
     }
     return error.what();
 }
@@ -40,6 +40,7 @@ int runCommandLine(int argc, char** argv) {
     addRenderCommand(app, run);
     addCompareCommand(app, run);
     addInfoCommand(app, run);
+    addBenchCommand(app, run);
     try {
         app.parse(argc, argv);
         return run();

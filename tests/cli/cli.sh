@@ -55,7 +55,7 @@ render() { "$program" render sample:cornell --size 64x48 --spp 4 --quiet "$@"; }
 expect 'help' 0 'render' "$program" --help
 expect 'version' 0 '^[0-9]+\.[0-9]+\.[0-9]+$' "$program" --version
 expect 'no command' 2 'see heliograph --help' "$program"
-expect 'unknown command' 2 "there is no command 'bench'; there are render" "$program" bench
+expect 'unknown command' 2 "there is no command 'paint'; there are render" "$program" paint
 expect 'unknown options, the first is named' 2 'error: --scheduler is not known here' "$program" render sample:cornell --scheduler wavefront --denoise
 expect 'unknown option before any command' 2 'error: --fast is not known here' "$program" --fast
 expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell --denoise
@@ -219,6 +219,28 @@ caches >cold.txt
 check 'a cold process fills the caches' test -s cold.txt
 warm_render --seed 7
 check 'a warm process compiles nothing' cmp -s cold.txt <(caches)
+
+# The benchmark: what is not known is refused before any work; a run killed anywhere goes on and measures the rest.
+bench() { "$program" bench irradiance/independent --quick --json bench.json "$@"; }
+expect 'bench refuses what it does not measure' 1 "teapot: is nothing that is measured; name a group" "$program" bench teapot
+expect 'bench refuses a folder that is not there' 1 'folder does not exist' "$program" bench furnace --json nowhere/x.json
+echo '{"what": "a shopping list"}' >list.json
+expect 'bench keeps a file that is not its own' 1 'is no record of a benchmark' "$program" bench furnace --json list.json
+check 'and leaves it as it is' grep -q shopping list.json
+bench --quiet &
+child=$!
+for ((tick = 0; tick < 1000; ++tick)); do [ -e bench.json ] && break; sleep 0.01; done
+sleep 0.05
+kill -9 $child 2>/dev/null
+wait $child 2>/dev/null
+cp bench.json first.json
+expect 'a killed bench goes on' 0 'irradiance +samplers +independent' bench
+check 'all its points are there once' test "$(tail -n +2 bench.csv | cut -d, -f 1-5 | sort | uniq | wc -l) $(tail -n +2 bench.csv | wc -l)" = '14 14'
+check 'and what was measured before the kill was kept' cmp -s <(grep cpu_seconds first.json) <(grep cpu_seconds bench.json | head -n "$(grep -c cpu_seconds first.json)")
+before=$(cat bench.json)
+expect 'a complete bench measures nothing' 0 'wrote bench.json' bench
+check 'and changes nothing' test "$before" = "$(cat bench.json)"
+expect 'a record of other settings is refused' 1 'settings: the record is of' "$program" bench irradiance/independent --json bench.json
 
 finished=0
 for delay in 1 2 3 4 5 6 8 10 100; do  # tenths of a second

@@ -1,0 +1,105 @@
+#include "../commands.hpp"
+#include "../console.hpp"
+#include "../interrupts.hpp"
+#include "../output_files.hpp"
+#include "bench_cases.hpp"
+#include "bench_record.hpp"
+#include "bench_runner.hpp"
+
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+namespace helio::cli {
+namespace {
+
+struct BenchArguments {
+    std::vector<std::string> names;
+    std::string json = "heliograph-bench.json";
+    std::string device = "auto";
+    bool quick = false, quiet = false;
+};
+
+void printTable(const BenchRecord& record, const std::vector<BenchCase>& cases) {
+    printLine("{:<12} {:<13} {:<12} {:>7} {:>10} {:>9} {:>16} {:>11} {:>9}", "scene", "group", "method",
+              "samples", "relMSE", "CPU s", "order", "1/(e CPUs)", "unsteady");
+    for (const BenchCase& each : cases) {
+        const std::vector<SeriesPoint> series = record.series(each);
+        if (series.empty()) continue;
+        const SeriesFit fit = fitSeries(series);
+        const SeriesPoint& last = series.back();
+        printLine("{:<12} {:<13} {:<12} {:>7} {:>10.3g} {:>9.4f} {:>8.3f} +- {:.3f} {:>11.4g} {:>7.1f} %",
+                  each.scene, each.group, each.method, last.samples, last.relmse, last.cpuSeconds, fit.order,
+                  fit.orderError, fit.efficiency, 100 * fit.unsteadiness);
+    }
+}
+
+/** The series whose error does not fall as theory says, a phrase each. */
+std::vector<std::string> unexpected(const BenchRecord& record, const std::vector<BenchCase>& cases) {
+    std::vector<std::string> phrases;
+    for (const BenchCase& each : cases) {
+        if (!each.order) continue;
+        const SeriesFit fit = fitSeries(record.series(each));
+        if (fit.order < each.order->low || fit.order > each.order->high) {
+            phrases.push_back(fmt::format("the error of {}/{} falls as samples^{:.3f}, outside {} to {}",
+                                          each.scene, each.method, fit.order, each.order->low,
+                                          each.order->high));
+        }
+    }
+    return phrases;
+}
+
+int bench(const BenchArguments& arguments) {
+    const BenchSettings settings = benchSettings(arguments.quick);
+    const std::vector<BenchCase> cases = chosenCases(benchCases(arguments.quick), arguments.names);
+    checkTextOutput(arguments.json);
+    handleInterrupts();
+    Renderer renderer({.device = arguments.device});
+    BenchRecord record(arguments.json, settings, renderer.device().info().name);
+    const auto start = std::chrono::steady_clock::now();
+    BenchRunner runner(renderer, record, settings, {interrupted, [&](const std::string& line) {
+                                                        if (arguments.quiet) return;
+                                                        const std::chrono::duration<double> elapsed =
+                                                            std::chrono::steady_clock::now() - start;
+                                                        say("{:5.0f} s  {}", elapsed.count(), line);
+                                                    }});
+    if (!runner.run(cases)) {
+        say("interrupted; the same command goes on from {}", arguments.json);
+        return Interrupted;
+    }
+    if (!arguments.quiet) {
+        printTable(record, cases);
+        printLine("wrote {}", record.file().string());
+        printLine("wrote {}", record.csvFile().string());
+    }
+    const std::vector<std::string> failures = unexpected(record, cases);
+    if (failures.empty()) return Done;
+    throw InputError(arguments.json, "", fmt::format("{}", fmt::join(failures, ", ")), "");
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app, Command& run) {
+    auto arguments = std::make_shared<BenchArguments>();
+    CLI::App* command = app.add_subcommand(
+        "bench", "Measure error against time: scenes by methods, over doubling numbers of samples");
+    command->add_option("NAME", arguments->names, "Groups, scenes, methods or SCENE/METHOD; default all");
+    command->add_flag("--quick", arguments->quick,
+                      "Small pictures and short series: minutes in place of hours");
+    command
+        ->add_option(
+            "--json", arguments->json,
+            "File of the results, written after every render; what it holds already is not measured again. "
+            "A .csv and a folder .pictures come beside it")
+        ->capture_default_str();
+    command
+        ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
+        ->capture_default_str();
+    command->add_flag("--quiet", arguments->quiet, "Print only warnings and errors");
+    command->callback([arguments, &run] { run = [arguments] { return bench(*arguments); }; });
+}
+
+}  // namespace helio::cli
