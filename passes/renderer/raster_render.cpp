@@ -86,8 +86,9 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       shadows_(options.shadows),
       filter_(options.textureFilter),
       lightSamples_(options.lightSamples),
+      shading_(options.shading),
       shade_(device, scene.deviceScene, scene.bounds, options.shadows, options.textureFilter,
-             options.lightSamples) {
+             options.lightSamples, options.shading) {
     makeMips(device);
     makeShadows(device);
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
@@ -104,8 +105,8 @@ bool RasterSession::fits(const RasterView& view, const RenderOptions& options) c
     return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
            options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
            options.textureFilter == filter_ && options.lightSamples == lightSamples_ &&
-           options.depthFormat == depth_ && options.shadows.kind == shadows_.kind &&
-           options.shadows.resolution == shadows_.resolution &&
+           options.depthFormat == depth_ && options.shading == shading_ &&
+           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
            options.shadows.filterRadius == shadows_.filterRadius &&
            options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
 }
@@ -239,6 +240,7 @@ bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens
                             std::vector<float>& color) {
     const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
     work_ = {};
+    corners_ = 0;
     shaded_ = 0;
     if (layers_) return layeredPicture(view, lens, job, color);
     if (kind_ == Kind::Supersampling) {
@@ -273,6 +275,7 @@ void RasterSession::addWork(const RasterCounters& counters) {
     const auto* from = reinterpret_cast<const std::uint64_t*>(&counters);
     auto* to = reinterpret_cast<std::uint64_t*>(&work_);
     for (std::size_t i = 0; i < sizeof counters / 8; ++i) to[i] += from[i];
+    corners_ += shade_.cornersShaded();
 }
 
 RasterSession::Auxiliary RasterSession::auxiliary(const RasterView& view, RenderJob& job) {
@@ -323,6 +326,7 @@ void RasterSession::noteCounters(RenderResult& result) const {
                        {"tile_triangles_visited", work_.tileVisited},
                        {"pixels_shaded", shaded_}};
     if (layers_) result.counters.emplace_back("alpha_layers", drawn_.layers);
+    if (corners_ > 0) result.counters.emplace_back("corners_shaded", corners_);
 }
 
 void RasterSession::render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job) {

@@ -67,6 +67,7 @@ private:
     Shadows shadows_;
     TextureFilter filter_;
     std::uint32_t lightSamples_;
+    Shading shading_;
     ShadePipeline shade_;
     /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;
@@ -84,7 +85,7 @@ private:
     std::unique_ptr<AlphaLayers> layers_;
     AlphaLayers::Drawing drawn_;  ///< most layers and open pixels of this picture
     RasterCounters work_;
-    std::uint64_t shaded_ = 0;
+    std::uint64_t shaded_ = 0, corners_ = 0;
 };
 
 /** Rasterizes and shades; fills in the job's result. There is no Monte Carlo error: relMSE is 0, and not

@@ -3,6 +3,8 @@
 #include "passes/raster/push.hpp"
 #include "passes/scene/material_layout.hpp"
 
+#include <heliograph/error.hpp>
+
 #include <fmt/format.h>
 #include <heliograph_kernels/shade.hpp>
 
@@ -63,9 +65,11 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene)
     : ShadePipeline(device, scene, {}, {.kind = Shadows::Kind::None}) {}
 
 ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds,
-                             const Shadows& shadows, TextureFilter filter, std::uint32_t lightSamples)
+                             const Shadows& shadows, TextureFilter filter, std::uint32_t lightSamples,
+                             Shading shading)
     : scene_(scene),
       filter_(scene.info().textures.empty() ? TextureFilter::Bilinear : filter),
+      shading_(shading),
       mips_(device, filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
                                                         : std::span<const glm::uvec4>()),
       shadowKind_(shadows.kind),
@@ -95,11 +99,14 @@ struct ShadePipeline::Common {
     std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
     bool hasImage = false;
     std::map<std::string, std::string> materials;  ///< definitions for more than diffuse surfaces
+    std::map<std::string, std::string> model;      ///< definitions for Blinn and Phong's model
     std::uint32_t firstLight = 0;                  ///< of those that are taken one by one
     std::vector<Binding> drawnLights;              ///< where lights are drawn
+    std::vector<Binding> corners;                  ///< where light is found for corners
     /** A kernel for these materials; the one that shows the surroundings where there is an image of them. */
     Kernel kernel(const Kernel& plain, bool surroundingsToo = true) const {
         std::map<std::string, std::string> defines = materials;
+        defines.insert(model.begin(), model.end());
         if (hasImage && surroundingsToo) defines["ENVIRONMENT_IMAGE"] = "1";
         if (!drawnLights.empty() && surroundingsToo) defines["DRAWN_LIGHTS"] = "1";
         if (defines.empty()) return plain;
@@ -107,7 +114,47 @@ struct ShadePipeline::Common {
     }
 };
 
-ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterView& view) {
+std::uint64_t ShadePipeline::cornersShaded() const {
+    const std::uint64_t each = shading_ == Shading::Flat ? 1 : shading_ == Shading::Gouraud ? 3 : 0;
+    return each * scene_.info().triangleCount;
+}
+
+/** The light on every corner or triangle, which pixels interpolate. */
+void ShadePipeline::declareCorners(Graph& graph, std::shared_ptr<const RasterView> view, Common& common) {
+    const std::uint64_t corners = cornersShaded();
+    if (corners == 0) return;
+    if (corners * 32 > maxStorageBufferRange_)
+        throw InputError("", "shading",
+                         fmt::format("{} triangles have more corners than the device binds at once",
+                                     scene_.info().triangleCount),
+                         "shade each pixel: --shading phong");
+    constexpr std::uint32_t width = 1024;  // of the dispatch
+    const auto height = std::uint32_t((corners + width - 1) / width);
+    const Buffer light = graph.buffer("shade.cornerLight", {corners * 32});
+    common.model["CORNERS"] = shading_ == Shading::Flat ? "1" : "3";
+    const std::uint32_t lights = scene_.info().lightCount, begin = common.firstLight;
+    for (std::uint32_t first = begin; first == begin || first < lights; first += kLightsPerPass) {
+        const std::uint32_t count = std::min(kLightsPerPass, lights - first);
+        SpecConstants spec = common.firstSpec;
+        if (first != begin) spec["LIGHT_SAMPLES"] = 0;
+        spec["FIRST_LIGHTS"] = first == begin;
+        Pass pass = graph.compute("shade.corners", common.kernel(shaders::shadeCorners), {.spec = spec});
+        bindScene(graph, pass, common);
+        pass.reads({{"uEnvironment", common.environment, Format::RGBA32F}})
+            .reads(common.surroundings)
+            .reads(common.drawnLights)
+            .record([view, first, count, height](Commands& c) {
+                c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(width, height);
+            });
+        if (first == begin)
+            pass.overwrites({{"uLight", light}});
+        else
+            pass.modifies({{"uLight", light}});
+    }
+    common.corners = {{"uCornerLight", light, Format::RGBA32F}};
+}
+
+ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr<const RasterView> view) {
     const std::uint32_t triangleCount = scene_.info().triangleCount;
     const bool sceneOrder = scene_.info().nodeCount == 0;
     Common common;
@@ -138,7 +185,7 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     const bool bilinear = filter_ == TextureFilter::Trilinear && !mips_.needed();
     common.spec["TEXTURE_FILTER"] = std::int32_t(bilinear ? TextureFilter::Bilinear : filter_);
     common.spec["SCENE_ORDER"] = sceneOrder;
-    common.spec["ORTHOGRAPHIC"] = view.orthographic;
+    common.spec["ORTHOGRAPHIC"] = view->orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
     common.firstSpec = common.spec;
     if (lightSamples_ > 0) {
@@ -151,6 +198,8 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, const RasterVie
     common.firstSpec.merge(scene_.environmentConstants());
     common.hasImage = scene_.hasEnvironmentImage();
     if (common.hasImage) common.surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
+    if (shading_ != Shading::Material) common.model["BLINN_PHONG"] = "1";
+    declareCorners(graph, std::move(view), common);
     return common;
 }
 
@@ -159,24 +208,25 @@ void ShadePipeline::bindScene(Graph& graph, Pass& pass, const Common& common) {
                                        "uLights", "uTextures", "uTexels8", "uTexelsFloat", "uInstanceFirst"}))
         .reads(mips_.bindings(graph))
         .reads(shadows_.bindings(graph))
-        .reads({{"uSlots", common.slots, Format::R32UI}});
+        .reads({{"uSlots", common.slots, Format::R32UI}})
+        .reads(common.corners);
     if (!common.materials.empty()) pass.reads(scene_.bindings(graph, {"uTangents"}));
 }
 
 ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
                                    std::shared_ptr<const RasterView> view) {
     const std::uint64_t pixels = std::uint64_t(view->width) * view->height;
-    const Common common = declareCommon(graph, *view);
+    const Common common = declareCommon(graph, view);
     ShadeOutput output;
     output.color = graph.buffer("shade.color", {pixels * 16});
     output.albedoDepth = graph.buffer("shade.albedoDepth", {pixels * 16});
     output.normal = graph.buffer("shade.normal", {pixels * 16});
     output.ids = graph.buffer("shade.ids", {pixels * 8});
 
-    const std::uint32_t lights = scene_.info().lightCount;
     const std::uint32_t begin = common.firstLight;
+    const std::uint32_t lights = common.corners.empty() ? scene_.info().lightCount : begin;
     for (std::uint32_t first = begin; first == begin || first < lights; first += kLightsPerPass) {
-        const std::uint32_t count = std::min(kLightsPerPass, lights - first);
+        const std::uint32_t count = std::min(kLightsPerPass, lights - std::min(lights, first));
         Pass pass = first == begin ? graph.compute("shade.surface", common.kernel(shaders::shadeSurface),
                                                    {.spec = common.firstSpec})
                                    : graph.compute("shade.lights", common.kernel(shaders::shadeLights, false),
@@ -202,12 +252,12 @@ ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,
 MultisampleOutput ShadePipeline::declareMultisample(Graph& graph, Buffer visibility, std::uint32_t samples,
                                                     std::shared_ptr<const RasterView> view) {
     const std::uint64_t pixels = std::uint64_t(view->width) * view->height;
-    const Common common = declareCommon(graph, *view);
+    const Common common = declareCommon(graph, view);
     MultisampleOutput output;
     output.color = graph.buffer("shade.color", {pixels * 16});
     output.shadings = graph.buffer("shade.shadings", {pixels * 4});
-    const std::uint32_t lights = scene_.info().lightCount;
     const std::uint32_t begin = common.firstLight;
+    const std::uint32_t lights = common.corners.empty() ? scene_.info().lightCount : begin;
     for (std::uint32_t first = begin; first == begin || first < lights; first += kLightsPerPass) {
         const std::uint32_t count = std::min(kLightsPerPass, lights - first);
         SpecConstants spec = common.firstSpec;
@@ -238,7 +288,7 @@ bool ShadePipeline::seesThrough() const {
 
 void ShadePipeline::declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,
                                  std::shared_ptr<const RasterView> view) {
-    const Common common = declareCommon(graph, *view);
+    const Common common = declareCommon(graph, view);
     const std::uint32_t first = common.firstLight;
     const std::uint32_t count = std::min(kLightsPerPass, scene_.info().lightCount - first);
     Pass pass = graph.compute("shade.layer", common.kernel(shaders::shadeLayer), {.spec = common.firstSpec});

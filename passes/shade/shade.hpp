@@ -55,7 +55,8 @@ public:
     /** `bounds` are the scene's. Where there are over 16 `lightSamples` emissive surfaces in the light
      * table, a pixel draws so many of them; 0 takes all of them always. */
     ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds, const Shadows& shadows,
-                  TextureFilter filter = TextureFilter::Trilinear, std::uint32_t lightSamples = 0);
+                  TextureFilter filter = TextureFilter::Trilinear, std::uint32_t lightSamples = 0,
+                  Shading shading = Shading::Material);
 
     /** The levels that shading samples; run their passes once before (MipChains::needed, declareMips). */
     MipChains& mips() { return mips_; }
@@ -83,16 +84,22 @@ public:
     /** The scene's triangles for RasterPipeline::declare. */
     RasterTriangles triangles(Graph& graph);
 
+    /** Points for which light is found apart from the pixels: corners or triangles; 0 where every pixel finds
+     * its own. */
+    std::uint64_t cornersShaded() const;
+
     /** What this shading leaves out of a scene, as WHAT and WHY for the statistics. */
     std::vector<std::pair<std::string, std::string>> skipped() const;
 
 private:
     struct Common;
-    Common declareCommon(Graph& graph, const RasterView& view);
+    Common declareCommon(Graph& graph, std::shared_ptr<const RasterView> view);
+    void declareCorners(Graph& graph, std::shared_ptr<const RasterView> view, Common& common);
     void bindScene(Graph& graph, Pass& pass, const Common& common);
 
     DeviceScene& scene_;
     TextureFilter filter_;
+    Shading shading_;
     MipChains mips_;
     Shadows::Kind shadowKind_;
     ShadowMaps shadows_;

@@ -26,7 +26,7 @@ void main() {
     uvec2 key = visibility[index];
     Shaded shaded = shadePoint(pixel, key);
     vec3 radiance = shaded.emission + reflectedLight(pixel, shaded) +
-                    (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+                    reflectedAmbient(shaded);
     vec4 sum = color[index];
     float passed = 1.0 - sum.w;
     float stopped = shaded.hit ? shaded.opacity : 1.0;

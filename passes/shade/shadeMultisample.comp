@@ -34,7 +34,7 @@ void main() {
         float share = float(bitCount(same)) / float(SAMPLES);
         Shaded shaded = shadePoint(pixel, key);
         vec3 radiance = reflectedLight(pixel, shaded);
-        if (FIRST_LIGHTS) radiance += shaded.emission + (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+        if (FIRST_LIGHTS) radiance += shaded.emission + reflectedAmbient(shaded);
         vec3 missed = FIRST_LIGHTS ? surroundings : vec3(0.0);
         sum += share * (shaded.hit ? vec4(radiance, 1.0) : vec4(missed, 0.0));
         count += uint(shaded.hit);

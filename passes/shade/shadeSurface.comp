@@ -15,7 +15,7 @@ void main() {
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     int index = pixel.y * size.x + pixel.x;
     Shaded shaded = shadePoint(pixel, visibility[index]);
-    vec3 radiance = shaded.emission + reflectedLight(pixel, shaded) + (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+    vec3 radiance = shaded.emission + reflectedLight(pixel, shaded) + reflectedAmbient(shaded);
     vec3 surroundings = visibleSurroundings(pixel);
     color[index] = shaded.hit ? vec4(radiance, 1.0) : vec4(surroundings, 0.0);
     albedoDepth[index] = shaded.hit ? vec4(shaded.albedo, shaded.depth) : vec4(0.0);

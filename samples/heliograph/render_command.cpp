@@ -8,6 +8,7 @@
 #include <heliograph/features.hpp>
 #include <heliograph/file.hpp>
 #include <heliograph/renderer.hpp>
+#include <heliograph/surfaces.hpp>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,9 @@
 namespace helio::cli {
 namespace {
 
+/** Where vertex normals come from. */
+enum class Normals { File, Flat, Equal, Area, Angle };
+
 struct RenderArguments {
     std::string scene;
     std::vector<std::string> outputs;
@@ -31,6 +35,7 @@ struct RenderArguments {
     std::string antialiasing;
     std::string shutter;
     Display display;
+    Normals normals = Normals::File;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
     RenderOptions options;
@@ -148,7 +153,7 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
         for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter",
-                                   "--light-samples", "--depth"}) {
+                                   "--light-samples", "--depth", "--shading"}) {
             if (command.count(option) > 0) {
                 throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
@@ -251,6 +256,21 @@ void reportValidation(Renderer& renderer) {
     if (!messages.empty()) throw DeviceError(fmt::format("validation reported {} messages", messages.size()));
 }
 
+void chooseNormals(Scene& scene, Normals normals) {
+    switch (normals) {
+        case Normals::File:
+            return;
+        case Normals::Flat:
+            return flatNormals(scene);
+        case Normals::Equal:
+            return smoothNormals(scene, NormalWeight::Equal);
+        case Normals::Area:
+            return smoothNormals(scene, NormalWeight::Area);
+        case Normals::Angle:
+            return smoothNormals(scene, NormalWeight::Angle);
+    }
+}
+
 int render(const CLI::App& command, RenderArguments& arguments) {
     RenderOptions& options = arguments.options;
     options.size = parseSize(arguments.size);
@@ -295,6 +315,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     std::optional<Scene> loaded = loadShowingProgress(arguments.scene, display, arguments.load);
     if (!loaded || interrupted()) return reportNothingWritten();
     Scene& scene = *loaded;
+    chooseNormals(scene, arguments.normals);
     if (image) {
         options.environment = Environment{.radiance = glm::vec3(1.0f), .image = int(scene.images.size())};
         scene.images.push_back(loadTextureImage(arguments.environment));
@@ -468,6 +489,22 @@ void addRenderCommand(CLI::App& app, Command& run) {
                             {"unorm16", DepthFormat::Unorm16}},
                            "Depth of the raster pipeline: reversed (default, float32 without a far plane); "
                            "to compare, over the camera's znear to zfar: float, unorm24, unorm16");
+    addChoice<Shading>(
+        command, "--shading", options.shading,
+        {{"material", Shading::Material},
+         {"flat", Shading::Flat},
+         {"gouraud", Shading::Gouraud},
+         {"phong", Shading::Phong}},
+        "Of the raster pipeline: material (default), each pixel by its material; flat, gouraud "
+        "or phong: Blinn and Phong's model once for each triangle, corner or pixel");
+    addChoice<Normals>(command, "--normals", arguments->normals,
+                       {{"file", Normals::File},
+                        {"flat", Normals::Flat},
+                        {"equal", Normals::Equal},
+                        {"area", Normals::Area},
+                        {"angle", Normals::Angle}},
+                       "file (default): the scene's own; flat: none; or the mean of those of the triangles "
+                       "around, equal, by area or by angle");
     command
         ->add_option("--light-samples", options.lightSamples,
                      "Emissive surfaces that a pixel of the raster pipeline draws where there are over 16 "

@@ -12,6 +12,9 @@
 #ifdef SURFACE_MATERIALS
 #include "shaders/raster/material_light.glsl"
 #endif
+#ifdef BLINN_PHONG
+#include "shaders/raster/blinn_phong.glsl"
+#endif
 
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
 layout(constant_id = 128) const int LIGHT_SAMPLES = 0;       ///< emissive surfaces that a pixel draws; 0: push's range has them all
@@ -40,6 +43,12 @@ vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
     return value;
 }
 
+#ifdef CORNERS
+/// Where light is found for CORNERS corners of a triangle (1: once for all of it), two texels each: that on kd / pi, and
+/// that on ks.
+layout(set = 0, binding = 14) uniform samplerBuffer uCornerLight;
+#endif
+
 struct Shaded {
     bool hit;
     vec3 emission;
@@ -52,7 +61,12 @@ struct Shaded {
     int instance;
     int triangle;   // within the instance
     vec3 diffuse;   // of light from many directions
-    vec3 mirror;    // of the surroundings, as a smooth surface reflects them
+    vec3 mirror;    // of the surroundings, as a smooth surface reflects them; Blinn and Phong's ks
+#ifdef BLINN_PHONG
+    vec3 toEye;
+    vec3 b;         // barycentrics
+    float exponent;
+#endif
     float opacity;  // what it stops of the light behind
 #ifdef SURFACE_MATERIALS
     SurfaceBsdf bsdf;
@@ -102,6 +116,21 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     shaded.diffuse = base.rgb * diffuseShare(shaded.bsdf);
     shaded.mirror = mirrorShare(shaded.bsdf);
     shaded.emission += shaded.hit ? ownLight(shaded.bsdf) : vec3(0.0);
+#endif
+#ifdef BLINN_PHONG
+    shaded.toEye = surface.toEye;
+    shaded.b = surface.b;
+    shaded.exponent = 1.0;
+#ifdef SURFACE_MATERIALS
+    BlinnPhong model = blinnPhongOf(shaded.bsdf, base.rgb);
+    shaded.diffuse = model.diffuse;
+    shaded.mirror = model.specular;
+    shaded.exponent = model.exponent;
+    if (HAS_NORMAL_MAPS) shaded.normal = shaded.bsdf.frame[2];
+#endif
+#if defined(CORNERS) && CORNERS == 1
+    shaded.normal = surface.front ? surface.faceNormal : -surface.faceNormal;
+#endif
 #endif
     shaded.faceNormal = surface.faceNormal;
     shaded.g = g;
@@ -218,8 +247,45 @@ vec3 drawnIrradiance(ivec2 pixel, vec3 position, vec3 normal) {
     return irradiance;
 }
 
+#ifdef BLINN_PHONG
+/// Light of the table's rows push.first to push.first + push.count - 1 on a point: `diffuse` on kd / pi, `gloss` on ks.
+struct LightSums {
+    vec3 diffuse, gloss;
+};
+LightSums blinnPhongSums(ivec2 pixel, vec3 position, vec3 normal, vec3 toEye, float exponent, vec3 faceNormal, int g) {
+    LightSums sums = LightSums(vec3(0.0), vec3(0.0));
+    if (LIGHT_SAMPLES > 0) sums.diffuse = drawnIrradiance(pixel, position, normal);
+    if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+        for (uint light = push.first; light < push.first + push.count; ++light) {
+            vec3 direction;
+            vec3 arriving = lightIrradiance(int(light), position, normal, direction);
+            if (SHADOWS != SHADOWS_NONE) arriving *= lightVisibility(int(light), position, faceNormal, g);
+            bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
+            BlinnPhongLight factor = BlinnPhongLight(1.0, 0.0);
+            if (punctual) factor = blinnPhongLight(normal, direction, toEye, exponent);
+            sums.diffuse += arriving * factor.diffuse;
+            sums.gloss += arriving * factor.gloss;
+        }
+    return sums;
+}
+#endif
+
 /// Radiance that a surface reflects of the lights push.first to push.first + push.count - 1.
 vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
+#ifdef BLINN_PHONG
+#ifdef CORNERS
+    LightSums sums = LightSums(vec3(0.0), vec3(0.0));
+    for (int k = 0; k < CORNERS; ++k) {
+        int at = (shaded.g * CORNERS + k) * 2;
+        float weight = CORNERS == 1 ? 1.0 : shaded.b[k];
+        sums.diffuse += weight * texelFetch(uCornerLight, at).rgb;
+        sums.gloss += weight * texelFetch(uCornerLight, at + 1).rgb;
+    }
+#else
+    LightSums sums = blinnPhongSums(pixel, shaded.position, shaded.normal, shaded.toEye, shaded.exponent, shaded.faceNormal, shaded.g);
+#endif
+    return shaded.diffuse * (INV_PI * sums.diffuse) + shaded.mirror * sums.gloss;
+#else
     vec3 irradiance = vec3(0.0), gloss = vec3(0.0);
     if (LIGHT_SAMPLES > 0) irradiance = drawnIrradiance(pixel, shaded.position, shaded.normal);
     if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
@@ -237,6 +303,16 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 #endif
         }
     return shaded.diffuse * (INV_PI * irradiance) + gloss;
+#endif
+}
+
+/// Radiance that a surface reflects of the surroundings.
+vec3 reflectedAmbient(Shaded shaded) {
+#ifdef CORNERS
+    return vec3(0.0);  // the corners' light has it
+#else
+    return (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+#endif
 }
 
 #endif

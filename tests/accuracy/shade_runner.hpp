@@ -26,9 +26,11 @@ struct ShadedImage {
     std::size_t at(std::uint32_t x, std::uint32_t y) const { return std::size_t(y) * width + x; }
 };
 
-inline ShadedImage shade(const Scene& scene, const RasterView& view, bool tree = false) {
+inline ShadedImage shade(const Scene& scene, const RasterView& view, bool tree = false,
+                         Shading shading = Shading::Material) {
     DeviceScene deviceScene(device(), scene, {.tree = tree});
-    ShadePipeline pipeline(device(), deviceScene);
+    ShadePipeline pipeline(device(), deviceScene, {}, {.kind = Shadows::Kind::None},
+                           TextureFilter::Trilinear, 0, shading);
     if (pipeline.mips().needed()) {
         Graph graph(device());
         pipeline.declareMips(graph);

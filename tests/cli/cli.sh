@@ -72,6 +72,7 @@ expect 'bad size' 2 'not a size' "$program" render sample:cornell --size 10by10
 expect 'zero size' 2 'outside' "$program" render sample:cornell --size 0x10
 expect 'bad samples' 2 'spp' "$program" render sample:cornell --spp 0
 expect 'too many samples' 2 '16777215' "$program" render sample:cornell --spp 16777216
+expect 'a path render has no rates of shading' 2 'shading: is there for --pipeline raster only' "$program" render sample:cornell --shading flat
 expect 'a path render culls nothing' 2 'raster only' render --cull back
 for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sampler sobol' --no-nee --adaptive --denoise '--error-map map.png' '--bounces 1'; do
     # shellcheck disable=SC2086

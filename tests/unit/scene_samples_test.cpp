@@ -110,9 +110,10 @@ TEST(Cornell, IsLambertian) {
     }
 }
 
-TEST(Samples, AreEleven) {
+TEST(Samples, AreTwelve) {
     EXPECT_EQ(sampleNames(), (std::vector<std::string>{"cornell", "gallery", "glass", "instances",
-                                                       "lenses", "lights500", "materials", "plates", "snell", "terrain", "wheel"}));
+                                                       "lenses", "lights500", "materials", "plates", "shading",
+                                                       "snell", "terrain", "wheel"}));
 }
 
 class EverySample : public testing::TestWithParam<std::string> {};

@@ -12,5 +12,6 @@
 #include <heliograph/pose.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
+#include <heliograph/surfaces.hpp>
 #include <heliograph/verify.hpp>
 #include <heliograph/version.hpp>

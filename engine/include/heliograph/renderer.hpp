@@ -90,6 +90,16 @@ enum class TextureFilter : std::uint8_t {
     Ewa           ///< elliptical weighted average: a Gaussian over the footprint's ellipse
 };
 
+/** How the raster pipeline shades: each pixel by its material; or by Blinn and Phong's model (kd, ks and the
+ * exponent are those of the material: shaders/raster/blinn_phong.glsl) at one of three rates. Textures are
+ * those of the pixel at every rate; shadows and normal maps are as fine as the rate. */
+enum class Shading : std::uint8_t {
+    Material,
+    Flat,     ///< light of a triangle's centre on its plane
+    Gouraud,  ///< light of the corners, interpolated
+    Phong     ///< light of the pixel, under the corners' normals interpolated
+};
+
 /** How the raster pipeline's z-buffer holds depth. The first tells apart differences of about z 2^-24 at any
  * distance z; the others, there to compare with, run from 0 at the camera's znear to 1 at its zfar (or where
  * the scene ends), beyond which nothing is told apart, and lose precision with the distance's square. */
@@ -133,6 +143,7 @@ struct RenderOptions {
     Shadows shadows;                                         ///< of the raster pipeline
     TextureFilter textureFilter = TextureFilter::Trilinear;  ///< of the raster pipeline
     DepthFormat depthFormat = DepthFormat::Reversed;         ///< of the raster pipeline
+    Shading shading = Shading::Material;                     ///< of the raster pipeline
     /** Raster pipeline: emissive surfaces that a pixel draws by their power, where there are over 16 times as
      * many; a picture comes out the same again. 0 takes all of them. Up to 4096. */
     std::uint32_t lightSamples = 64;
