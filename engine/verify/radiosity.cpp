@@ -67,6 +67,12 @@ Radiosity::Radiosity(std::span<const Patch> patches) {
     }
 }
 
+Radiosity::Radiosity(std::vector<double> factors, std::vector<double> emission,
+                     std::vector<double> reflectance)
+    : emission_(std::move(emission)), reflectance_(std::move(reflectance)), factors_(std::move(factors)) {
+    assert(reflectance_.size() == size() && factors_.size() == size() * size());
+}
+
 std::vector<double> Radiosity::apply(const std::vector<double>& radiance) const {
     std::vector<double> result(size());
     for (std::size_t i = 0; i < size(); ++i) {
@@ -98,7 +104,7 @@ std::vector<double> Radiosity::solve() const {
     return x;
 }
 
-std::vector<double> Radiosity::iterate(double tolerance, int* iterations) const {
+std::vector<double> Radiosity::iterate(double tolerance, int* iterations, int most) const {
     std::vector<double> radiance = emission_;
     for (int turn = 1;; ++turn) {
         std::vector<double> next = apply(radiance);
@@ -109,7 +115,7 @@ std::vector<double> Radiosity::iterate(double tolerance, int* iterations) const 
         }
         radiance = std::move(next);
         if (iterations != nullptr) *iterations = turn;
-        if (change <= tolerance || turn >= 100000) return radiance;
+        if (change <= tolerance || turn >= most) return radiance;
     }
 }
 

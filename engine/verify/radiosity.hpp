@@ -22,21 +22,25 @@ struct Patch {
 /** Adds the parts of a patch that is cut into n x n. */
 void subdivide(const Patch& patch, int n, std::vector<Patch>& parts);
 
-/** The operator K over patches that all see each other whole (the inside of a convex body). */
+/** The operator K over patches. */
 class Radiosity {
 public:
-    /** Form factors from each patch to every other: the closed form from a point to a polygon, averaged over
-     * 4 x 4 Gauss points of the patch. Asserts patches of positive area. */
+    /** Of patches that all see each other whole (the inside of a convex body). Form factors are the closed
+     * form from a point to a polygon, averaged over 4 x 4 Gauss points of the patch. Asserts patches of
+     * positive area. */
     explicit Radiosity(std::span<const Patch> patches);
+
+    /** From form factors (row by row, from each patch to every other), emission and reflectance of each. */
+    Radiosity(std::vector<double> factors, std::vector<double> emission, std::vector<double> reflectance);
 
     double formFactor(std::size_t from, std::size_t to) const { return factors_[from * size() + to]; }
     std::size_t size() const { return emission_.size(); }
 
     /** Radiance of each patch, by Gaussian elimination of I - K. */
     std::vector<double> solve() const;
-    /** The same by L <- E + K L until no radiance changes by more than `tolerance`; `iterations` tells how
-     * often. */
-    std::vector<double> iterate(double tolerance, int* iterations = nullptr) const;
+    /** The same by L <- E + K L until no radiance changes by more than `tolerance`, or `most` times;
+     * `iterations` tells how often. */
+    std::vector<double> iterate(double tolerance, int* iterations = nullptr, int most = 100000) const;
     /** K^n E: radiance after exactly n reflections. */
     std::vector<double> bounce(int n) const;
 

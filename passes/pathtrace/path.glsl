@@ -12,6 +12,9 @@
 #else
 #include "passes/pathtrace/lambert_bsdf.glsl"
 #endif
+#ifdef RADIOSITY
+#include "passes/radiosity/patch_radiance.glsl"
+#endif
 #include "shaders/sampling/sampler.glsl"
 #include "shaders/sampling/warp.glsl"
 #include "shaders/scene/lights.glsl"
@@ -79,6 +82,10 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         }
         path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);
     }
+
+#ifdef RADIOSITY
+    path.radiance += hit ? path.throughput * patchRadiance(slot, s.b, s.front) : vec3(0.0);
+#endif
 
     const uint dimension = DIMENSION_PATH + path.depth * DIMENSIONS_PER_SCATTERING;
     const vec2 lobe = chooseLobe(SAMPLER_KIND, numbers, dimension);

@@ -4,6 +4,7 @@
 #include "passes/pathtrace/camera_frame.hpp"
 #include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
+#include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/scene/material_layout.hpp"
 
 #include <heliograph/error.hpp>
@@ -144,6 +145,13 @@ struct PathTracer::Impl {
             spec.merge(bounces_->constants());
             bounces.push_back({"uBounces", bounces_->import(graph)});
         }
+        std::vector<Binding> patches;
+        if (options_.radiosity) {
+            assert(options_.maxDepth == 0 && options_.patches != nullptr);
+            defines["RADIOSITY"] = "1";
+            spec["HAS_EMISSION"] = false;
+            patches = options_.patches->bindings(graph);
+        }
         spec["SAMPLER_KIND"] = std::uint32_t(options_.sampler);
         spec["FILTER_KIND"] = std::uint32_t(options_.filter);
         const bool usesStrata =
@@ -161,6 +169,7 @@ struct PathTracer::Impl {
             .reads(scene_.bindings(graph, buffers))
             .reads(cameraBinding(graph))
             .reads(ends)
+            .reads(patches)
             .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
             .modifies(bounces)
             .record([this](Commands& commands) {
@@ -265,10 +274,10 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
     const bool moves = options.shutter != ShutterTimes{};
-    return {.tree = !choose || moves || scene.triangleCount() > kWrittenOutTriangles,
-            .writeOutLargest = choose && !moves,
+    return {.tree = !choose || moves || options.radiosity || scene.triangleCount() > kWrittenOutTriangles,
+            .writeOutLargest = choose && !moves && !options.radiosity,
             .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
-            .sampleSurfaces = options.nextEventEstimation,
+            .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
             .lights = options.lights};
 }
 

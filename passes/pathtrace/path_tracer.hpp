@@ -29,6 +29,8 @@
 
 namespace helio {
 
+class RadiosityPass;
+
 /** What "unlimited" means for a path: longer ones are cut and counted. */
 inline constexpr std::uint32_t kUnlimitedDepth = 65536;
 
@@ -50,6 +52,9 @@ struct PathTraceOptions {
     std::uint32_t seed = 0;
     bool adaptive = false;  ///< each pixel has its own number of samples, see setSampleEnds()
     int bounces = -1;       ///< light of up to so many scatterings is also summed apart, see bounceLayers()
+    /** Surfaces shine with what `patches` has solved and give off nothing else; for a maxDepth of 0. */
+    bool radiosity = false;
+    RadiosityPass* patches = nullptr;  ///< need not be there for packOptions()
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */
     std::uint32_t turnBudget = 30000;

@@ -4,6 +4,7 @@
 #include "engine/film/variance.hpp"
 #include "passes/denoise/denoise.hpp"
 #include "passes/pathtrace/bounce_layers.hpp"
+#include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/sample_schedule.hpp"
@@ -205,6 +206,22 @@ void addDenoised(Device& device, const FilmImages& film, const FirstHits& hits, 
     job.addTimings(denoised.timings);
 }
 
+/** Solves for the light of the patches; false where the application cancels. */
+bool solveRadiosity(RadiosityPass& pass, RenderJob& job) {
+    RenderResult& result = job.result;
+    const auto goOn = [&](double fraction) {
+        return job.notify({.stage = "radiosity", .fraction = fraction});
+    };
+    if (!pass.solve(goOn, result.radiosity.emplace())) return false;
+    job.addTimings(pass.timings());
+    result.skipped.emplace_back(
+        "the error of patches",
+        "the error told is that of antialiasing; other --patches show how far light changes");
+    if (!result.radiosity->converged)
+        result.warnings.emplace_back("the light between patches did not come to rest: it is too dark");
+    return true;
+}
+
 /** What limits of time and error did not bring. */
 void warnOfLimits(const FilmImages& film, RenderJob& job) {
     RenderResult& result = job.result;
@@ -259,6 +276,8 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
                       options.integrator == Integrator::Hemisphere ||
                       options.integrator == Integrator::AmbientOcclusion;
     if (once) result.maxDepth = std::min(result.maxDepth, 1u);
+    result.radiosity = options.integrator == Integrator::Radiosity;
+    if (result.radiosity) result.maxDepth = 0;
     result.whitted = options.integrator == Integrator::Whitted;
     result.hemisphere = options.integrator == Integrator::Hemisphere;
     if (result.hemisphere) result.nextEventEstimation = false;
@@ -273,11 +292,17 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
     return result;
 }
 
-void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job) {
+void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job,
+                 std::optional<PatchList> patches) {
     RenderResult& result = job.result;
     target.clear();
     PathTraceOptions traceOptions = pathTraceOptions(job.options, view.shutter);
     traceOptions.cameraPoses = view.poses;
+    std::optional<RadiosityPass> radiosity;
+    if (patches) {
+        radiosity.emplace(device, scene.deviceScene, std::move(*patches));
+        traceOptions.patches = &*radiosity;
+    }
     PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, traceOptions, target.film());
     job.graphviz = tracer.graphviz();
     // Every kernel runs once before the clock of rendering starts: the driver compiles at the first dispatch.
@@ -290,10 +315,12 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     if (!job.notify({.stage = "compile"})) return;
     Checkpointing checkpoints(device, tracer, target.film(), scene.identity, view, job);
     job.beginRendering();
+    if (radiosity && !solveRadiosity(*radiosity, job)) return;
 
     result.samples = PathLoop(tracer, target, checkpoints, job, device.info().type == "cpu").run();
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
+    if (radiosity) result.error.reliable = false;  // it knows nothing of the patches
     if (job.options.denoise) addDenoised(device, film, hits, job);
     job.finish();
     if (job.options.errorMap) {

@@ -1,9 +1,12 @@
 #pragma once
 /** @file The path pipeline of the renderer. */
 #include "passes/pathtrace/path_tracer.hpp"
+#include "passes/radiosity/patches.hpp"
 #include "passes/renderer/film_target.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/render_job.hpp"
+
+#include <optional>
 
 namespace helio {
 
@@ -14,7 +17,9 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
 
 /** Traces the scene into the film until the samples, the time or the error asked for are reached, or the
  * application cancels; fills in the job's result. The film holds the samples of all whole batches; after
- * a cancel, pixels that were through with the last batch hold that too, as the samples channel says. */
-void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job);
+ * a cancel, pixels that were through with the last batch hold that too, as the samples channel says. With
+ * patches (Integrator::Radiosity) their light is solved first. */
+void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job,
+                 std::optional<PatchList> patches = std::nullopt);
 
 }  // namespace helio

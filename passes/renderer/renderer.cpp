@@ -81,6 +81,10 @@ void check(const RenderOptions& options) {
            fmt::format("{} samples per pixel, of which some pixels would take 16 times as many",
                        options.samples),
            "give at most 1048575");
+    refuse(options.radiosityPatches == 0 || options.radiosityPatches > kMostPatches, "radiosityPatches",
+           fmt::format("{} patches", options.radiosityPatches), "give 1 to 2048");
+    refuse(options.integrator == Integrator::Radiosity && (options.maxDepth >= 0 || options.bounces >= 0),
+           "maxDepth, bounces", "radiosity has the light of all bounces at once", "leave them out");
     refuse(options.bounces >= 0 && options.pipeline == Pipeline::Raster, "bounces",
            "the raster pipeline has direct light alone", "leave it out");
     refuse(options.bounces >= 0 && !options.checkpoint.empty(), "bounces",
@@ -106,6 +110,17 @@ void check(const std::optional<Environment>& environment, const Scene& scene) {
     const double length = glm::dot(environment->rotation, environment->rotation);
     refuse(!(length > 0.5 && length < 2), "environment", "its rotation is no unit quaternion",
            "give a rotation");
+}
+
+/** The patches of a scene as it was prepared. */
+PatchList patchesOf(const Scene& scene, const std::optional<Environment>& environment, PackOptions pack,
+                    const PreparedScene& prepared, std::uint32_t count) {
+    refuse(prepared.deviceScene.info().motionKeys > 0, "radiosity", "the scene moves",
+           "close the shutter, or render by paths");
+    Scene lit = scene;
+    lit.environment = environment;
+    pack.origin = prepared.origin;
+    return cutIntoPatches(packScene(lit, pack), count);
 }
 
 /** A black picture: what there is when a render is cancelled before its first sample. */
@@ -177,7 +192,10 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
     warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
     if (!job.notify({.stage = "compile"})) return;
     if (path) {
-        renderPaths(device, prepared, view, film(options.size), job);
+        std::optional<PatchList> patches;
+        if (options.integrator == Integrator::Radiosity)
+            patches = patchesOf(scene, environment, pack, prepared, options.radiosityPatches);
+        renderPaths(device, prepared, view, film(options.size), job, std::move(patches));
     } else {
         renderRaster(device, prepared, view, job);
     }

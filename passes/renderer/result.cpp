@@ -43,6 +43,14 @@ std::string RenderResult::json() const {
                                   {"undenoised_relmse", denoised->undenoised},
                                   {"strength", denoised->strength}};
     }
+    if (radiosity) {
+        statistics["radiosity"] = {{"patches", radiosity->patches},
+                                   {"unknowns", radiosity->unknowns},
+                                   {"iterations", radiosity->iterations},
+                                   {"converged", radiosity->converged}};
+        if (radiosity->denseDifference)
+            statistics["radiosity"]["dense_difference"] = *radiosity->denseDifference;
+    }
     // Names come from files and may not be UTF-8; numbers that JSON has no text for become null.
     return statistics.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -143,6 +143,14 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
             printLine("denoised relMSE {:.3g}, {:.3g} before (biased; measured by halves)",
                       result.denoised->relmse, result.denoised->undenoised);
         }
+        if (result.radiosity) {
+            const RenderResult::Radiosity& radiosity = *result.radiosity;
+            printLine("patches  {}, {} sides lit, {} iterations{}", radiosity.patches, radiosity.unknowns,
+                      radiosity.iterations,
+                      radiosity.denseDifference
+                          ? fmt::format(", {:.2g} from the dense solution", *radiosity.denseDifference)
+                          : "");
+        }
     } else {
         printLine("error    not measured");
     }
@@ -164,6 +172,13 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         }
         if (options.adaptive && options.sampler == SamplerKind::SobolBlue) {
             throw CLI::ValidationError("--adaptive", "needs a sampler that does not correlate neighbours");
+        }
+        if (options.integrator == Integrator::Radiosity) {
+            for (const char* option : {"--max-depth", "--lights", "--no-nee", "--bounces"})
+                if (command.count(option) > 0)
+                    throw CLI::ValidationError(option, "is there for integrators that follow paths");
+        } else if (command.count("--patches") > 0) {
+            throw CLI::ValidationError("--patches", "is there for --integrator radiosity only");
         }
         const bool isLocal = options.integrator == Integrator::AmbientOcclusion ||
                              options.integrator == Integrator::Hemisphere;
@@ -191,9 +206,10 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         throw CLI::ValidationError("--shadow-resolution", "has no effect on --shadows none; leave it out");
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
-    for (const char* option : {"--time", "--max-error", "--adaptive", "--denoise", "--error-map",
-                               "--max-depth", "--filter", "--sampler", "--integrator", "--lights", "--no-nee",
-                               "--accelerator", "--bounces", "--checkpoint", "--resume"}) {
+    for (const char* option :
+         {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
+          "--sampler", "--integrator", "--patches", "--lights", "--no-nee", "--accelerator", "--bounces",
+          "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -437,9 +453,16 @@ void addRenderCommand(CLI::App& app, Command& run) {
          {"direct", Integrator::Direct},
          {"whitted", Integrator::Whitted},
          {"ao", Integrator::AmbientOcclusion},
-         {"hemisphere", Integrator::Hemisphere}},
+         {"hemisphere", Integrator::Hemisphere},
+         {"radiosity", Integrator::Radiosity}},
         "path (default): all of light's ways; direct: one scattering; whitted: mirrors, then "
-        "direct light; ao: ambient occlusion; hemisphere: direct light by uniform directions");
+        "direct light; ao: ambient occlusion; hemisphere: direct light by uniform directions; radiosity: all "
+        "of diffuse light, solved over patches");
+    command
+        ->add_option("--patches", options.radiosityPatches,
+                     "Parts that --integrator radiosity cuts the surfaces into, about")
+        ->check(CLI::Range(1u, 2048u))
+        ->capture_default_str();
     addChoice<SamplerKind>(
         command, "--sampler", options.sampler,
         {{"sobol", SamplerKind::Sobol},

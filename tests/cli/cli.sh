@@ -62,6 +62,10 @@ expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell 
 expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler dice
 expect 'ao refuses an environment' 2 'environment: has no effect' "$program" render sample:cornell --integrator ao --environment 1,1,1
 expect 'hemisphere refuses a choice of lights' 2 'lights: is there for integrators' "$program" render sample:cornell --integrator hemisphere --lights power
+expect 'radiosity refuses a depth' 2 'max-depth: is there for' "$program" render sample:cornell --integrator radiosity --max-depth 2
+expect 'patches without radiosity' 2 'patches: is there for' "$program" render sample:cornell --patches 99
+expect 'radiosity of what is not diffuse' 1 'not Lambertian' "$program" render sample:plates --size 8x8 --integrator radiosity
+expect 'radiosity compares its two solutions' 0 'from the dense solution' "$program" render sample:cornell --size 16x16 --spp 1 --integrator radiosity --patches 64
 expect 'whitted refuses --no-nee' 2 'no-nee: leaves' "$program" render sample:cornell --integrator whitted --no-nee
 expect 'a size of lights without pcss is refused' 2 'light-size: is there for' "$program" render sample:cornell --pipeline raster --light-size 1
 expect 'a checkpoint in no folder is refused before rendering' 1 'no-such-folder' "$program" render sample:cornell --checkpoint no-such-folder/x

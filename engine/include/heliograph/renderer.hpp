@@ -28,8 +28,10 @@ enum class SamplerKind : std::uint8_t { Sobol, Independent, Halton, Stratified, 
  * smooth refraction with direct light at their end (Whitted 1980; rough surfaces are lit by what light
  * sampling finds, which a constant environment is not); the cosine-weighted part of the sky that white opaque
  * surfaces see (AmbientOcclusion: radiance 1 means all of it); Direct by directions that are uniform over the
- * hemisphere and sample no light, slow on purpose (Hemisphere). */
-enum class Integrator : std::uint8_t { Path, Direct, Whitted, AmbientOcclusion, Hemisphere };
+ * hemisphere and sample no light, slow on purpose (Hemisphere). Radiosity follows no paths: it solves L = E +
+ * K L over patches of the surfaces, for small scenes of Lambertian materials without textures or punctual
+ * lights, and its picture has no noise but the error of the patches. */
+enum class Integrator : std::uint8_t { Path, Direct, Whitted, AmbientOcclusion, Hemisphere, Radiosity };
 /** How one of many lights is chosen: by what each brings to the place (tables over space and normal, built
  * where there are more than a few lights), by power, or each with the same chance. */
 enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
@@ -125,6 +127,9 @@ struct RenderOptions {
     PixelFilter filter = PixelFilter::Box;
     SamplerKind sampler = SamplerKind::Sobol;
     Integrator integrator = Integrator::Path;
+    /** Integrator::Radiosity: parts that the surfaces are cut into, about; up to 2048, and no fewer than
+     * triangles. */
+    std::uint32_t radiosityPatches = 1024;
     bool nextEventEstimation = true;
     LightChoice lights = LightChoice::Adaptive;
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
@@ -219,6 +224,18 @@ struct RenderResult {
         double strength = 0;  ///< mean over the pixels
     };
     std::optional<Denoised> denoised;
+    /** What Integrator::Radiosity solved. */
+    struct Radiosity {
+        std::uint32_t patches = 0;
+        std::uint32_t unknowns = 0;  ///< sides of patches that light reaches
+        std::uint32_t iterations =
+            0;  ///< of L <- E + K L, until nothing changed by 1e-9 of the largest source
+        bool converged = true;
+        /** Largest difference between the iterated solution and that by elimination, relative to the largest
+         * radiance; none where there are over 1024 unknowns, which are solved by iteration alone. */
+        std::optional<double> denseDifference;
+    };
+    std::optional<Radiosity> radiosity;
     /** Relative standard error of each pixel, R G B: the root of its expected part in relMSE. Empty unless
      * asked for. */
     ImageF errorMap;
