@@ -1,5 +1,7 @@
 #include "engine/scene/mesh/attributes.hpp"
 #include "engine/scene/mesh/mesh.hpp"
+#include "engine/scene/mesh/ply_faces.hpp"
+#include "engine/scene/mesh/ply_slots.hpp"
 #include "engine/scene/mesh/ply_values.hpp"
 #include "engine/scene/mesh/polygon.hpp"
 #include "engine/scene/mesh/textures.hpp"
@@ -8,47 +10,19 @@
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace helio {
 namespace mesh {
 namespace {
-
-/** What a property of a vertex is. */
-enum Slot : std::size_t { X, Y, Z, NormalX, NormalY, NormalZ, U, V, Red, Green, Blue, Alpha, slotCount };
-
-std::size_t slotOf(const std::string& name) {
-    static const std::array<std::vector<const char*>, slotCount> names{{
-        {"x"},
-        {"y"},
-        {"z"},
-        {"nx", "normal_x"},
-        {"ny", "normal_y"},
-        {"nz", "normal_z"},
-        {"u", "s", "texture_u", "texture_s", "texcoord_u", "texture_coord_u", "tu"},
-        {"v", "t", "texture_v", "texture_t", "texcoord_v", "texture_coord_v", "tv"},
-        {"red", "r", "diffuse_red"},
-        {"green", "g", "diffuse_green"},
-        {"blue", "b", "diffuse_blue"},
-        {"alpha", "a", "diffuse_alpha"},
-    }};
-    for (std::size_t slot = 0; slot < slotCount; ++slot) {
-        if (std::find(names[slot].begin(), names[slot].end(), name) != names[slot].end()) return slot;
-    }
-    return slotCount;
-}
-
-/** 1 as an integer type stores it for a colour. */
-double colorScale(PlyType type) {
-    if (type == PlyType::Uint8) return 1.0 / 255;
-    if (type == PlyType::Uint16) return 1.0 / 65535;
-    return type < PlyType::Float32 ? 1.0 / 255 : 1.0;
-}
 
 class PlyReader {
 public:
@@ -137,16 +111,13 @@ private:
         if (!has_[X] || !has_[Y] || !has_[Z])
             throw InputError(file_, "element vertex", "has no x, y and z", "give positions");
         const auto count = std::size_t(element.count);
-        const bool hasNormals = has_[NormalX] && has_[NormalY] && has_[NormalZ];
-        const bool hasTexcoords = has_[U] && has_[V];
-        const bool hasColors = has_[Red] && has_[Green] && has_[Blue];
-        primitive_.positions.reserve(count);
-        if (hasNormals) primitive_.normals.reserve(count);
-        if (hasTexcoords) primitive_.texcoords.emplace_back().reserve(count);
-        if (hasColors) primitive_.colors.reserve(count);
-        std::array<float, slotCount> vertex{};
+        primitive_.positions.resize(count);
+        if (has_[NormalX] && has_[NormalY] && has_[NormalZ]) primitive_.normals.resize(count);
+        if (has_[U] && has_[V]) primitive_.texcoords.emplace_back().resize(count);
+        if (has_[Red] && has_[Green] && has_[Blue]) primitive_.colors.resize(count);
+        Vertex vertex{};
         vertex[Alpha] = 1;
-        for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t i = readVertexRecords(element, slots); i < count; ++i) {
             report(i);
             values_.at(element.name, i);
             for (std::size_t p = 0; p < slots.size(); ++p) {
@@ -155,21 +126,73 @@ private:
                     skipProperty(property);
                     continue;
                 }
-                double value = values_.next(property.type);
-                if (!(std::abs(value) < 0x1.ffffffp127)) {
+                const double value = values_.next(property.type);
+                if (!fitsSinglePrecision(value)) {
                     values_.refuse(fmt::format("{} is {}", property.name, value),
                                    "give finite numbers that single precision can hold");
                 }
-                if (slots[p] >= Red) value *= colorScale(property.type);
-                vertex[slots[p]] = float(value);
+                vertex[slots[p]] = float(slots[p] >= Red ? value * colorScale(property.type) : value);
             }
-            primitive_.positions.emplace_back(vertex[X], vertex[Y], vertex[Z]);
-            if (hasNormals)
-                primitive_.normals.emplace_back(vertex[NormalX], vertex[NormalY], vertex[NormalZ]);
-            if (hasTexcoords) primitive_.texcoords[0].emplace_back(vertex[U], 1 - vertex[V]);
-            if (hasColors)
-                primitive_.colors.emplace_back(vertex[Red], vertex[Green], vertex[Blue], vertex[Alpha]);
+            store(i, vertex);
         }
+    }
+
+    using Vertex = std::array<float, slotCount>;
+
+    static bool fitsSinglePrecision(double value) { return std::abs(value) < 0x1.ffffffp127; }
+
+    void store(std::size_t i, const Vertex& vertex) {
+        primitive_.positions[i] = {vertex[X], vertex[Y], vertex[Z]};
+        if (!primitive_.normals.empty())
+            primitive_.normals[i] = {vertex[NormalX], vertex[NormalY], vertex[NormalZ]};
+        if (!primitive_.texcoords.empty()) primitive_.texcoords[0][i] = {vertex[U], 1 - vertex[V]};
+        if (!primitive_.colors.empty())
+            primitive_.colors[i] = {vertex[Red], vertex[Green], vertex[Blue], vertex[Alpha]};
+    }
+
+    /** Vertices of a binary file lie at equal distances where they have no lists: side by side. Returns how
+     * many were read, which ends before one with a fault. */
+    std::size_t readVertexRecords(const PlyElement& element, const std::vector<std::size_t>& slots) {
+        struct Column {
+            std::size_t offset, slot;
+            PlyType type;
+            double scale;
+        };
+        std::vector<Column> columns;
+        std::size_t size = 0;
+        for (std::size_t p = 0; p < slots.size(); ++p) {
+            const PlyProperty& property = element.properties[p];
+            if (property.isList || values_.isText()) return 0;
+            const double scale = slots[p] >= Red ? colorScale(property.type) : 1.0;
+            if (slots[p] != slotCount) columns.push_back({size, slots[p], property.type, scale});
+            size += sizeOf(property.type);
+        }
+        const auto count = std::size_t(element.count);
+        std::size_t done = 0;
+        while (done < count) {
+            monitor_.report("geometry", values_.fraction());
+            const std::span<const char> records = values_.records(size, count - done);
+            const std::size_t n = records.size() / size;
+            if (n == 0) return done;
+            std::atomic<bool> hasFault{false};
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 2048), [&](const auto& range) {
+                Vertex vertex{};
+                vertex[Alpha] = 1;
+                for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                    for (const Column& column : columns) {
+                        const double value =
+                            plyValue(&records[i * size + column.offset], column.type, values_.isSwapped());
+                        if (!fitsSinglePrecision(value)) hasFault = true;
+                        vertex[column.slot] = float(value * column.scale);
+                    }
+                    store(done + i, vertex);
+                }
+            });
+            if (hasFault) return done;  // these are read again, to say where it is
+            values_.take(n * size);
+            done += n;
+        }
+        return done;
     }
 
     void readFaces(const PlyElement& element) {
@@ -190,7 +213,17 @@ private:
         }
         std::vector<std::int32_t> corners;
         elementName_ = &element.name;
+        const std::optional<FaceLayout> layout =
+            isStrips || values_.isText() ? std::nullopt : faceLayout(element);
+        std::uint64_t nextRecords = 0;  // from which face on it is worth trying
         for (std::uint64_t i = 0; i < element.count; ++i) {
+            if (layout && i >= nextRecords) {
+                constexpr std::uint64_t most = 16384, fewest = 1024;
+                const std::uint64_t taken = readFaceRecords(*layout, i, most, element.count - i);
+                i += taken;
+                if (i == element.count) break;
+                if (taken < fewest) nextRecords = i + most;
+            }
             report(i);
             index_ = i;
             values_.at(element.name, i);
@@ -229,6 +262,39 @@ private:
             highestElement_ = elementName_;
         }
         return result;
+    }
+
+    /** Reads faces with as many corners as the next one, up to `most` of those left. Returns how many. */
+    std::uint64_t readFaceRecords(const FaceLayout& layout, std::uint64_t face, std::uint64_t most,
+                                  std::uint64_t facesLeft) {
+        monitor_.report("geometry", values_.fraction());
+        const std::span<const char> first = values_.records(layout.size(0), 1);
+        if (first.empty()) return 0;
+        const double said = plyValue(&first[layout.before], layout.countType, values_.isSwapped());
+        if (!(said >= 3 && said <= 255)) return 0;
+        const auto corners = std::size_t(said);
+        const std::span<const char> records =
+            values_.records(layout.size(corners), std::min(most, facesLeft));
+        const std::size_t size = records.size() / layout.size(corners), triangles = corners - 2;
+        auto& indices = primitive_.indices;
+        const std::size_t before = indices.size();
+        if (before == 0) {  // else they double, and double the memory
+            const std::uint64_t left = values_.left() / layout.size(corners);
+            indices.reserve(std::size_t(std::min(facesLeft, left)) * triangles * 3);
+        }
+        indices.resize(before + size * triangles * 3);
+        const DecodedFaces decoded =
+            decodeFaces(records, layout, corners, values_.isSwapped(), std::span(indices).subspan(before));
+        indices.resize(before + decoded.count * triangles * 3);
+        for (std::size_t i = 0; corners > 3 && i < decoded.count; ++i)
+            fans_.push_back({std::uint32_t(before / 3 + i * triangles), std::uint32_t(corners)});
+        if (decoded.highest > highest_) {
+            highest_ = decoded.highest;
+            highestPlace_ = face + decoded.highestFace;
+            highestElement_ = elementName_;
+        }
+        values_.take(decoded.count * layout.size(corners));
+        return decoded.count;
     }
 
     void addFace(const std::vector<std::int32_t>& corners) {

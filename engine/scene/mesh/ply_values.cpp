@@ -15,18 +15,12 @@ namespace helio::mesh {
 namespace {
 
 constexpr std::size_t bufferSize = std::size_t(1) << 20;
-/** A word of text longer than any number. */
-constexpr std::size_t longestWord = 512;
 
 template <class T>
 double valueOf(const std::array<char, 8>& bytes) {
     T value{};
     std::memcpy(&value, bytes.data(), sizeof value);
     return double(value);
-}
-
-bool isSpace(char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
 }  // namespace
@@ -37,6 +31,7 @@ PlyValues::PlyValues(const ByteSource& source, const PlyHeader& header, const st
       isText_(header.format == PlyHeader::Format::Ascii),
       isSwapped_((header.format == PlyHeader::Format::BigEndian) ==
                  (std::endian::native == std::endian::little)),
+      words_(source, header.size),
       offset_(header.size) {}
 
 void PlyValues::refuse(const std::string& fault, const std::string& remedy) const {
@@ -59,15 +54,11 @@ void PlyValues::fill(std::size_t size) {
     offset_ += more;
 }
 
-double PlyValues::next(PlyType type) {
-    if (isText_) return nextWord();
-    const std::size_t size = sizeOf(type);
-    fill(size);
-    if (buffer_.size() - place_ < size) refuse("the file ends here", "write it again; it may be cut off");
+double plyValue(const char* from, PlyType type, bool isSwapped) {
     std::array<char, 8> bytes{};
-    std::memcpy(bytes.data(), &buffer_[place_], size);
-    place_ += size;
-    if (isSwapped_) std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(size));
+    const std::size_t size = sizeOf(type);
+    std::memcpy(bytes.data(), from, size);
+    if (isSwapped) std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(size));
     switch (type) {
         case PlyType::Int8:
             return valueOf<std::int8_t>(bytes);
@@ -88,25 +79,36 @@ double PlyValues::next(PlyType type) {
     }
 }
 
+double PlyValues::next(PlyType type) {
+    if (isText_) return nextWord();
+    const std::size_t size = sizeOf(type);
+    fill(size);
+    if (buffer_.size() - place_ < size) refuse("the file ends here", "write it again; it may be cut off");
+    const double value = plyValue(&buffer_[place_], type, isSwapped_);
+    place_ += size;
+    return value;
+}
+
+std::span<const char> PlyValues::records(std::size_t size, std::uint64_t count) {
+    fill(std::size_t(std::min<std::uint64_t>(count, std::max<std::size_t>(bufferSize / size, 1)) * size));
+    const std::uint64_t atHand = (buffer_.size() - place_) / size;
+    return std::span(buffer_).subspan(place_, std::size_t(std::min(count, atHand)) * size);
+}
+
 bool PlyValues::hasMore() {
-    while (true) {
-        fill(longestWord);
+    if (isText_) return words_.hasMore();
+    do {
+        fill(1);
         while (place_ < buffer_.size() && isSpace(buffer_[place_])) ++place_;
-        if (place_ < buffer_.size()) return true;
-        if (offset_ == source_.size()) return false;
-    }
+    } while (place_ == buffer_.size() && offset_ < source_.size());
+    return place_ < buffer_.size();
 }
 
 double PlyValues::nextWord() {
-    if (!hasMore()) refuse("the file ends here", "write it again; it may be cut off");
-    fill(longestWord);
-    std::size_t end = place_;
-    while (end < buffer_.size() && end - place_ < longestWord && !isSpace(buffer_[end])) ++end;
-    const std::string_view word(&buffer_[place_], end - place_);
-    const std::optional<double> value = parseDouble(word);
-    if (!value) refuse(fmt::format("has {} for a number", shown(word)), "give finite numbers");
-    place_ = end;
-    return *value;
+    if (!words_.hasMore()) refuse("the file ends here", "write it again; it may be cut off");
+    if (!words_.isNumber())
+        refuse(fmt::format("has {} for a number", shown(words_.fault())), "give finite numbers");
+    return words_.next();
 }
 
 void PlyValues::skip(PlyType type, std::uint64_t count) {
