@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace helio::test {
 namespace {
@@ -290,6 +291,75 @@ TEST_F(Gltf, KeepsOnlyVerticesInUseOfASharedAccessor) {
     }
     EXPECT_EQ(scene.meshes[0].primitives[1].positions.size(), 100u);
     EXPECT_EQ(scene.meshes[0].primitives[1].indices[50], 50u);
+}
+
+/** Accessors of many blocks, which are decoded side by side. */
+class LargeGltf {
+public:
+    static constexpr std::uint32_t vertices = 50000, triangles = 70000;
+    static glm::vec3 position(std::uint32_t i) { return {float(i) * 0.25f, float(i % 977), -float(i)}; }
+    static std::uint32_t index(std::uint32_t i) { return i < vertices ? i : (i * 31) % vertices; }
+
+    /** Positions between two other floats each, normals of 8 bits, of which every 1000th is zero. */
+    static GltfDocument document(std::uint32_t badVertex = vertices, std::uint32_t badIndex = 3 * triangles) {
+        GltfDocument file = GltfDocument::triangle();
+        std::vector<float> positions;
+        std::vector<std::int8_t> normals;
+        for (std::uint32_t i = 0; i < vertices; ++i) {
+            const glm::vec3 p = position(i);
+            const float y = i == badVertex ? std::numeric_limits<float>::infinity() : p.y;
+            positions.insert(positions.end(), {-1.0f, p.x, y, p.z, -2.0f});
+            const std::int8_t z = i % 1000 == 7 ? 0 : 100;
+            normals.insert(normals.end(), {0, 0, z, 0});
+        }
+        std::vector<std::uint32_t> indices;
+        for (std::uint32_t i = 0; i < 3 * triangles; ++i)
+            indices.push_back(i == badIndex ? vertices : index(i));
+        const int view = file.addView(packed(positions), 20), bytes = file.addView(packed(normals), 4);
+        file.doc["accessors"][0] = {{"bufferView", view},
+                                    {"byteOffset", 4},
+                                    {"componentType", 5126},
+                                    {"count", vertices},
+                                    {"type", "VEC3"}};
+        file.doc["accessors"].push_back({{"bufferView", bytes},
+                                         {"componentType", 5120},
+                                         {"normalized", true},
+                                         {"count", vertices},
+                                         {"type", "VEC3"}});
+        file.primitive()["attributes"]["NORMAL"] = 1;
+        file.primitive()["indices"] = file.addAccessor<std::uint32_t>(indices, "SCALAR", indices.size());
+        return file;
+    }
+};
+
+TEST_F(Gltf, LargeAccessorsAreWhatWasWritten) {
+    const Scene scene = helio::load(write("large.glb", LargeGltf::document().glb()).string());
+    const Primitive& primitive = scene.meshes[0].primitives.at(0);
+    ASSERT_EQ(primitive.positions.size(), LargeGltf::vertices);
+    ASSERT_EQ(primitive.indices.size(), 3 * LargeGltf::triangles);
+    std::size_t wrong = 0;
+    for (std::uint32_t i = 0; i < LargeGltf::vertices; ++i) {
+        wrong += primitive.positions[i] != LargeGltf::position(i);
+        wrong += i % 1000 != 7 && primitive.normals[i] != glm::vec3(0, 0, 1);
+        wrong += std::abs(glm::length(primitive.normals[i]) - 1) > 1e-6f;
+    }
+    for (std::uint32_t i = 0; i < 3 * LargeGltf::triangles; ++i)
+        wrong += primitive.indices[i] != LargeGltf::index(i);
+    EXPECT_EQ(wrong, 0u);
+}
+
+TEST_F(Gltf, FaultsFarIntoAccessorsAreNamed) {
+    const auto fault = [&](const GltfDocument& document) {
+        try {
+            helio::load(write("bad.glb", document.glb()).string());
+        } catch (const InputError& error) {
+            return error.fault;
+        }
+        return std::string();
+    };
+    EXPECT_EQ(fault(LargeGltf::document(43210)), "element 43210 of accessor 0 is not finite");
+    EXPECT_EQ(fault(LargeGltf::document(LargeGltf::vertices, 123456)),
+              "element 123456 is 50000, the primitive has 50000 vertices");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "engine/scene/gltf/accessors.hpp"
 
 #include "engine/scene/gltf/uri.hpp"
+#include "engine/scene/parallel.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -217,7 +218,9 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
         }
     };
     if (!layout.base.empty()) {
-        for (std::size_t i = 0; i < accessor.count; ++i) readElement(i, &layout.base[i * layout.stride]);
+        forBlocks(accessor.count, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) readElement(i, &layout.base[i * layout.stride]);
+        });
     }
     if (!accessor.sparse) return;
     const Component indexType = accessor.sparse->indexType;
@@ -266,18 +269,20 @@ void Asset::floats(int index, int components, const std::string& place, std::spa
     const double one = accessor.isNormalized ? normalizedOne(accessor.component) : 0;
     const Layout from = layout(index);
     if (accessor.component == Component::Float && isPacked(from)) {
-        std::memcpy(values.data(), from.base.data(), values.size_bytes());
-        const auto wrong =
-            std::find_if_not(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
-        if (wrong != values.end())
-            refuseElement(index, place, std::size_t(wrong - values.begin()) / std::size_t(components));
-        return;
+        forBlocks(values.size(), [&](std::size_t begin, std::size_t end) {
+            std::memcpy(&values[begin], &from.base[begin * sizeof(float)], (end - begin) * sizeof(float));
+        });
+    } else {
+        if (from.base.empty()) std::fill(values.begin(), values.end(), 0.0f);
+        read(index, from, [&](std::size_t element, std::size_t c, double value) {
+            values[element * std::size_t(components) + c] =
+                float(one > 0 ? std::max(value / one, -1.0) : value);
+        });
     }
-    std::fill(values.begin(), values.end(), 0.0f);
-    read(index, from, [&](std::size_t element, std::size_t c, double value) {
-        if (!std::isfinite(value)) refuseElement(index, place, element);
-        values[element * std::size_t(components) + c] = float(one > 0 ? std::max(value / one, -1.0) : value);
-    });
+    if (accessor.component != Component::Float) return;
+    const std::size_t wrong =
+        firstWhere(values.size(), [&](std::size_t i) { return !std::isfinite(values[i]); });
+    if (wrong < values.size()) refuseElement(index, place, wrong / std::size_t(components));
 }
 
 std::vector<float> Asset::floats(int index, int components, const std::string& place,
@@ -294,12 +299,16 @@ std::vector<float> Asset::floats(int index, int components, const std::string& p
     checkType(index, components, place);
     if (from.base.empty()) return values;
     const double one = from.accessor.isNormalized ? normalizedOne(from.accessor.component) : 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::byte* const element = &from.base[chosen[i / width] * from.stride];
-        const double value = component(element + i % width * from.componentSize, from.accessor.component);
-        if (!std::isfinite(value)) refuseElement(index, place, chosen[i / width]);
-        values[i] = float(one > 0 ? std::max(value / one, -1.0) : value);
-    }
+    forBlocks(values.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::byte* const element = &from.base[chosen[i / width] * from.stride];
+            const double value = component(element + i % width * from.componentSize, from.accessor.component);
+            values[i] = float(one > 0 ? std::max(value / one, -1.0) : value);
+        }
+    });
+    const std::size_t wrong =
+        firstWhere(values.size(), [&](std::size_t i) { return !std::isfinite(values[i]); });
+    if (wrong < values.size()) refuseElement(index, place, chosen[wrong / width]);
     return values;
 }
 
@@ -321,7 +330,10 @@ std::vector<std::uint32_t> Asset::indices(int index, const std::string& place) c
     const Layout from = layout(index);
     std::vector<std::uint32_t> values(accessor.count);
     if (accessor.component == Component::UnsignedInt && isPacked(from)) {
-        std::memcpy(values.data(), from.base.data(), values.size() * sizeof(std::uint32_t));
+        forBlocks(values.size(), [&](std::size_t begin, std::size_t end) {
+            std::memcpy(&values[begin], &from.base[begin * sizeof(std::uint32_t)],
+                        (end - begin) * sizeof(std::uint32_t));
+        });
         return values;
     }
     read(index, from,

@@ -62,6 +62,7 @@ private:
     [[noreturn]] void refuseElement(int accessor, const std::string& place, std::size_t element) const;
     /** Whether the elements lie as they are wanted, one after the other. */
     static bool isPacked(const Layout& layout);
+    /** Calls store(element, component, number), for several elements side by side. */
     template <class Store>
     void read(int accessor, const Layout& layout, Store&& store) const;
 

@@ -1,10 +1,13 @@
 #include "engine/scene/gltf/build.hpp"
+#include "engine/scene/gltf/frames.hpp"
+#include "engine/scene/parallel.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -31,45 +34,6 @@ std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, Mode mode) {
         }
     }
     return result;
-}
-
-/** Unit normals; where the file has a zero, the area-weighted mean of the triangles around. */
-void fixNormals(Primitive& primitive) {
-    std::vector<glm::dvec3> mean;
-    for (std::size_t i = 0; i < primitive.normals.size(); ++i) {
-        const glm::dvec3 normal = primitive.normals[i];
-        double length = glm::length(normal);
-        if (length > 1e-20) {
-            primitive.normals[i] = normal / length;
-            continue;
-        }
-        if (mean.empty()) {
-            mean.resize(primitive.positions.size());
-            for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
-                const std::uint32_t* const corner = &primitive.indices[t];
-                const glm::dvec3 a = primitive.positions[corner[0]];
-                const glm::dvec3 area = glm::cross(glm::dvec3(primitive.positions[corner[1]]) - a,
-                                                   glm::dvec3(primitive.positions[corner[2]]) - a);
-                for (int k = 0; k < 3; ++k) mean[corner[k]] += area;
-            }
-        }
-        length = glm::length(mean[i]);
-        primitive.normals[i] = length > 0 ? glm::vec3(mean[i] / length) : glm::vec3(0, 0, 1);
-    }
-}
-
-/** Unit tangents with a sign of 1 or -1; a zero becomes any direction across the normal. */
-void fixTangents(Primitive& primitive) {
-    for (std::size_t i = 0; i < primitive.tangents.size(); ++i) {
-        glm::dvec3 tangent(primitive.tangents[i]);
-        if (!(glm::length(tangent) > 1e-20)) {
-            const glm::dvec3 normal = primitive.normals.empty() ? glm::vec3(0, 0, 1) : primitive.normals[i];
-            tangent =
-                glm::cross(normal, std::abs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
-        }
-        primitive.tangents[i] =
-            glm::vec4(glm::vec3(glm::normalize(tangent)), primitive.tangents[i].w < 0 ? -1 : 1);
-    }
 }
 
 class PrimitiveBuilder {
@@ -105,11 +69,19 @@ private:
     void checkBounds(int accessor, const std::vector<glm::vec3>& positions) const {
         if (asset_.accessor(accessor).isNormalized) return;
         const json& from = asset_.document()["accessors"][std::size_t(accessor)];
-        glm::dvec3 low(positions[0]), high(low);
-        for (const glm::vec3& p : positions) {
-            low = glm::min(low, glm::dvec3(p));
-            high = glm::max(high, glm::dvec3(p));
-        }
+        using Box = std::pair<glm::vec3, glm::vec3>;
+        const auto join = [](const Box& a, const Box& b) {
+            return Box(glm::min(a.first, b.first), glm::max(a.second, b.second));
+        };
+        const Box box = tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, positions.size(), kBlock), Box(positions[0], positions[0]),
+            [&](const auto& range, Box part) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    part = join(part, {positions[i], positions[i]});
+                return part;
+            },
+            join);
+        const glm::dvec3 low(box.first), high(box.second);
         const double tolerance = 1e-4 * std::max(glm::length(high - low), glm::length(high) * 1e-3);
         const auto differs = [&](const char* member, const glm::dvec3& actual) {
             const auto found = from.find(member);
@@ -133,9 +105,12 @@ private:
             std::sort(kept_.begin(), kept_.end());
             kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
         } else {
-            std::vector<bool> isUsed(size_, false);
-            for (const std::uint32_t index : primitive.indices) isUsed[index] = true;
-            const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), true));
+            std::vector<std::uint8_t> isUsed(size_, 0);
+            forBlocks(primitive.indices.size(), [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    std::atomic_ref(isUsed[primitive.indices[i]]).store(1, std::memory_order_relaxed);
+            });
+            const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), 1));
             if (used >= size_ - used) return;
             memory_.take(place_, 0, used * sizeof(std::uint32_t));
             kept_.reserve(used);
@@ -286,12 +261,12 @@ private:
         }
         if (accessor >= 0) {
             indices = asset_.indices(accessor, place);
-            const auto wrong = std::find_if(indices.begin(), indices.end(),
-                                            [this](std::uint32_t index) { return index >= size_; });
-            if (wrong != indices.end()) {
+            const std::size_t wrong =
+                firstWhere(indices.size(), [&](std::size_t i) { return indices[i] >= size_; });
+            if (wrong < indices.size()) {
                 throw InputError(asset_.file(), place,
-                                 fmt::format("element {} is {}, the primitive has {} vertices",
-                                             wrong - indices.begin(), *wrong, size_),
+                                 fmt::format("element {} is {}, the primitive has {} vertices", wrong,
+                                             indices[wrong], size_),
                                  "keep indices below the number of vertices");
             }
         } else {
