@@ -1,5 +1,6 @@
 #include "engine/graph/build.hpp"
 #include "engine/graph/declaration.hpp"
+#include "engine/shader/kernel_cache.hpp"
 
 #include <atomic>
 #include <cassert>
@@ -73,7 +74,7 @@ Image Graph::import(DeviceImage& image) {
 Pass Graph::compute(std::string name, const Kernel& kernel, const ComputeOptions& options) {
     graph::DeclaredPass pass;
     pass.name = std::move(name);
-    pass.kernel = kernel;
+    pass.kernel = overlaid(kernel);
     pass.spec = options.spec;
     impl_->passes.push_back(std::move(pass));
     return {impl_.get(), std::uint32_t(impl_->passes.size() - 1)};

@@ -3,6 +3,7 @@
 #include "engine/shader/glsl_compiler.hpp"
 #include "engine/shader/source_tree.hpp"
 #include "engine/shader/spirv_files.hpp"
+#include "engine/shader/spirv_validator.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -153,6 +154,10 @@ Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant) {
     }
     return makeKernel(intern(kernel.name), intern(kernel.source),
                       compileCached(path, *text, variant, KeepOnDisk::Yes));
+}
+
+Kernel overlaid(const Kernel& kernel) {
+    return shaderOverlay().empty() || !isEmbedded(kernel.spirv) ? kernel : compileVariant(kernel, {});
 }
 
 Kernel compileKernel(std::string_view name, std::string_view glsl, const KernelVariant& variant) {

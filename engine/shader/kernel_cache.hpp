@@ -20,6 +20,10 @@ std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const
 /** Whether compileCached made these words. */
 bool isCompiledHere(std::span<const std::uint32_t> spirv);
 
+/** What a kernel that the build embedded is under the folder of shaderOverlay(): for debugging and for tests
+ * that plant faults. The kernel as given where there is no such folder, or its words were not embedded. */
+Kernel overlaid(const Kernel& kernel);
+
 struct KernelCacheStatistics {
     std::uint64_t compiled = 0;  ///< times glslang ran
     std::uint64_t loaded = 0;    ///< results taken from an earlier process

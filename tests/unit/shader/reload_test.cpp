@@ -106,6 +106,21 @@ TEST_F(Reload, VariantsFollowEditedIncludes) {
     EXPECT_EQ(compileVariant(shaders::scale_values, variant).spirv.data(), second.spirv.data());
 }
 
+TEST_F(Reload, EmbeddedKernelsAreTheFoldersWhereItIs) {
+    const auto words = [](const Kernel& kernel) {
+        return std::vector<std::uint32_t>(kernel.spirv.begin(), kernel.spirv.end());
+    };
+    EXPECT_EQ(words(overlaid(shaders::scale_values)), words(shaders::scale_values)) << "nothing differs yet";
+    write(headerPath, scaledBy("value / factor"));
+    EXPECT_NE(words(overlaid(shaders::scale_values)), words(shaders::scale_values));
+    const Kernel compiled =
+        compileVariant(shaders::scale_values, {.defines = {{"FACTOR", "9.0"}}, .generated = ""});
+    EXPECT_EQ(overlaid(compiled).spirv.data(), compiled.spirv.data())
+        << "compiled here, from the folder already";
+    ::unsetenv("HELIOGRAPH_SHADER_DIR");
+    EXPECT_EQ(overlaid(shaders::scale_values).spirv.data(), shaders::scale_values.spirv.data());
+}
+
 TEST(Watcher, ChangesNothingWithoutAFolder) {
     KernelWatcher watcher(shaders::scale_values);
     EXPECT_FALSE(watcher.poll());
