@@ -30,7 +30,7 @@ constexpr Sampler kSamplers[] = {{"sobol", SamplerKind::Sobol},
 
 class CaseList {
 public:
-    explicit CaseList(bool quick) : most_(quick ? 64 : 1024), quick_(quick) {}
+    explicit CaseList(bool quick) : most_(quick ? 64 : 256), quick_(quick) {}
 
     BenchCase& add(const char* group, const char* scene, const char* method) {
         BenchCase added;
@@ -131,7 +131,7 @@ std::string BenchCase::truth() const {
 
 BenchSettings benchSettings(bool quick) {
     if (quick) return {true, {48, 48}, 2, 1024, 12};
-    return {false, {96, 96}, 4, 8192, 32};
+    return {false, {96, 96}, 3, 4096, 32};
 }
 
 std::vector<BenchCase> benchCases(bool quick) {

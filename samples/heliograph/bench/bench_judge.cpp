@@ -70,6 +70,12 @@ ImageF truthPicture(const Truth& truth, std::uint32_t width, std::uint32_t heigh
     return image;
 }
 
+Display displayOf(const Truth& truth) {
+    double mean = 0;
+    for (const double value : truth.rgb) mean += value / double(truth.rgb.size());
+    return {.exposure = std::min(0.0, -std::log2(std::max(mean, 1e-30) / 0.5))};
+}
+
 SeriesFit fitSeries(std::span<const SeriesPoint> points) {
     std::vector<double> samples, errors, steady;
     double last = 0;

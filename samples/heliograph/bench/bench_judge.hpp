@@ -31,6 +31,9 @@ PictureError pictureError(const ImageF& image, const Truth& truth);
 ImageF differencePicture(const ImageF& image, const Truth& truth);
 ImageF truthPicture(const Truth& truth, std::uint32_t width, std::uint32_t height);
 
+/** Shows pictures of bright scenes darker: their mean as half of white. */
+Display displayOf(const Truth& truth);
+
 /** A point of a series: all renders of one number of samples. */
 struct SeriesPoint {
     std::uint32_t samples = 0;

@@ -135,7 +135,7 @@ bool BenchRunner::makeTruth(const BenchCase& measured, const Scene& scene) {
     const ImageF picture = truthPicture(truth_, width, height);
     if (description["kind"] == "reference") saveImage(file, picture);
     const std::filesystem::path shown = record_.picture(key + ".truth.png");
-    saveImage(shown, picture);
+    saveImage(shown, picture, displayOf(truth_));
     description["picture"] = shown.filename().string();
     record_.setTruth(key, description);
     truthKey_ = key;
@@ -150,7 +150,7 @@ bool BenchRunner::measure(const BenchCase& measured, const Scene& scene, std::ui
     Json point = describe(*result, pictureError(image, truth_), samples, repeat);
     if (samples == pictureSamples(measured) && repeat == 0) {
         const std::string name = fmt::format("{}.{}", measured.truth(), measured.method);
-        saveImage(record_.picture(name + ".png"), image);
+        saveImage(record_.picture(name + ".png"), image, displayOf(truth_));
         saveImage(record_.picture(name + ".difference.png"), differencePicture(image, truth_));
         point["picture"] = name + ".png";
         point["difference"] = name + ".difference.png";
