@@ -131,6 +131,8 @@ GltfLobes gltfLobes(GltfSurface s, vec3 wo) {
     lobes.sheen = HAS_SHEEN ? maxComponent(s.sheenColor) * 0.5 : 0.0;
     lobes.coat = coatReflectance(s, wo);
     const float rest = HAS_CLEARCOAT ? 1.0 - lobes.coat : 1.0;
+    if (lobes.specular < 1e-30) lobes.specular = 0.0;  // what is drawn is divided by its chance
+    if (lobes.transmission < 1e-30) lobes.transmission = 0.0;
     const float sum = lobes.specular + lobes.diffuse + lobes.transmission + lobes.sheen;
     const float scale = sum > 1e-30 ? rest / sum : 0.0;  // of denormal sums the inverse is infinite
     lobes.specular *= scale;

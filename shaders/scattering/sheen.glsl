@@ -9,12 +9,14 @@
 
 /// Roughnesses below are taken as this: 1/alpha is the power of a sine.
 CONST Real SHEEN_LEAST_ROUGHNESS = REAL(0.07);
+/// Cosines below are taken as this: the model grows like their inverse.
+CONST Real SHEEN_LEAST_COSINE = REAL(1e-7);
 
 FN Real sheenFit(Real x, Real t) {
     Real a = mix(REAL(21.5473), REAL(25.3245), t), b = mix(REAL(3.82987), REAL(3.32435), t);
     Real c = mix(REAL(0.19823), REAL(0.16801), t), d = mix(REAL(-1.97760), REAL(-1.27393), t);
     Real e = mix(REAL(-4.32054), REAL(-4.85967), t);
-    return a / (1.0 + b * powPositive(max(x, REAL(1e-7)), c)) + d * x + e;
+    return a / (1.0 + b * powPositive(max(x, SHEEN_LEAST_COSINE), c)) + d * x + e;
 }
 /// Lambda of the masking.
 FN Real sheenMasking(Real cosine, Real alpha) {
@@ -36,7 +38,8 @@ FN ScatterValue sheenValue(Real roughness, Vec3 wo, Vec3 wi) {
     Real alpha = square(max(roughness, SHEEN_LEAST_ROUGHNESS));
     Vec3 h = normalizeSafe(wo + wi, Vec3(0.0, 0.0, 1.0));
     Real masked = 1.0 + sheenMasking(min(wo.z, 1.0), alpha) + sheenMasking(min(wi.z, 1.0), alpha);
-    return ScatterValue(Vec3(sheenFibres(h, alpha) / (masked * 4.0 * wo.z)), wi.z * INV_PI);
+    Real cosines = max(wo.z, SHEEN_LEAST_COSINE) * max(wi.z, SHEEN_LEAST_COSINE);
+    return ScatterValue(Vec3(sheenFibres(h, alpha) / (masked * 4.0 * cosines) * wi.z), wi.z * INV_PI);
 }
 FN ScatterSample sheenSample(Real roughness, Vec3 wo, Vec3 u) {
     Vec3 wi = cosineHemisphere(Vec2(u.x, u.y));

@@ -44,9 +44,9 @@ float index() {
 }
 float coin() { return float(nextBits() & 1u); }
 vec3 direction(bool below) {
-    const uint choice = nextBits() % 4u;
+    const uint choice = nextBits() % 5u;
     const float u = number();
-    float c = choice == 0u ? exp2(-126.0 * u) : choice == 1u ? 1.0 - exp2(-24.0 * u) : u;
+    float c = choice == 0u ? exp2(-126.0 * u) : choice == 1u ? 1.0 - exp2(-24.0 * u) : choice == 2u ? 0.0 : u;
     c = clamp(c, 1e-38, 1.0);
     const float s = sqrt((1.0 - c) * (1.0 + c)), a = 6.2831853 * number();
     return vec3(s * cos(a), s * sin(a), below && coin() > 0.5 ? -c : c);
