@@ -366,6 +366,69 @@ TEST(Dielectric, RefractsBySnellAndScalesRadiance) {
     EXPECT_EQ(edge[1], 1.0f);
 }
 
+TEST(Dielectric, TransmittanceIsWhatReflectionLeaves) {
+    const auto sum = runOnDevice<float>(
+        kFresnel, "float t; float r = fresnelDielectric(a, b, t); return r + fresnelTransmittance(a, t, b);",
+        floatsSpaced(0.05f, 1.0f, 200), std::vector<float>(200, 1.5f));
+    for (const float total : sum) ASSERT_NEAR(total, 1.0f, 1e-6f);
+}
+
+TEST(Dielectric, PanesMirrorOrLetThroughInLine) {
+    const std::vector<float> cosines = floatsSpaced(0.05f, 1.0f, 100);
+    const auto x = runOnDevice<glm::vec4>(
+        {"shaders/scattering/dielectric.glsl"},
+        "vec3 wo = vec3(0.0, sqrt((1.0 - a) * (1.0 + a)), a);"
+        "float r = paneReflectance(fresnelDielectric(a, 1.5));"
+        "vec3 up = paneSample(1.5, vec3(1.0), wo, vec3(0.5, 0.5, r - 1e-3)).direction;"
+        "vec3 down = paneSample(1.5, vec3(1.0), wo, vec3(0.5, 0.5, r + 1e-3)).direction;"
+        "return vec4(r, length(up - vec3(0.0, -wo.y, a)), length(down + wo), 0.0);",
+        cosines);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double r = verify::fresnelDielectric(double(cosines[i]), 1.5).average();
+        ASSERT_NEAR(double(x[i].x), 2 * r / (1 + r), 1e-6L) << cosines[i];
+        ASSERT_EQ(x[i].y, 0.0f) << cosines[i];
+        ASSERT_EQ(x[i].z, 0.0f) << cosines[i];
+    }
+}
+
+TEST(Conductor, SmoothOnesMirrorByFresnelsEquations) {
+    const std::vector<float> cosines = floatsSpaced(0.05f, 1.0f, 100);
+    const auto weight = runOnDevice<glm::vec4>(
+        {"shaders/scattering/conductor.glsl"},
+        "vec3 wo = vec3(0.0, sqrt((1.0 - a) * (1.0 + a)), a); Microfacets m = Microfacets(vec2(0.0), false);"
+        "ScatterSample s = conductorSample(vec3(0.2), vec3(3.1), m, wo, vec3(0.5));"
+        "return vec4(s.weight.x, length(s.direction - vec3(0.0, -wo.y, a)), s.density, 0.0);",
+        cosines);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        const double r = verify::fresnelConductor(double(cosines[i]), double(0.2f), double(3.1f)).average();
+        ASSERT_NEAR(double(weight[i].x), r, 2e-6L) << cosines[i];
+        ASSERT_EQ(weight[i].y, 0.0f) << cosines[i];
+        ASSERT_LT(weight[i].z, 0.0f) << cosines[i];
+    }
+}
+
+/** By Fujii's formula with the angles themselves, at azimuths that mirroring would change. */
+TEST(Diffuse, OrenNayarTurnsWithTheAzimuthBetween) {
+    std::vector<float> azimuths = floatsSpaced(0.0f, 6.28f, 64);
+    const auto got =
+        runOnDevice<float>({"shaders/scattering/oren_nayar.glsl"},
+                           "vec3 wo = vec3(0.6 * 0.28, 0.6 * 0.96, 0.8), wi = vec3(0.8 * b, 0.6);"
+                           "return orenNayarValue(vec3(1.0), 0.7, wo, wi).value.x;",
+                           azimuths, [&] {
+                               std::vector<glm::vec2> turned;
+                               for (const float phi : azimuths)
+                                   turned.emplace_back(std::cos(phi), std::sin(phi));
+                               return turned;
+                           }());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        const double between = double(azimuths[i]) - std::acos(double(0.28f));
+        const double across = double(0.6f) * double(0.8f) * std::cos(between);
+        const double a = 1 / (1 + (0.5 - 2 / (3 * kPi)) * double(0.7f));
+        const double f = a / kPi * (1 + double(0.7f) * (across > 0 ? across / double(0.8f) : across));
+        ASSERT_NEAR(double(got[i]), f * double(0.6f), 1e-6L) << azimuths[i];
+    }
+}
+
 /** The device against the same source in double: what single precision costs a glTF-like lobe. */
 TEST(Microfacets, SinglePrecisionKeepsNarrowLobes) {
     std::vector<glm::vec3> wo;

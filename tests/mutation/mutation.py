@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""Plants small faults in shaders and engine, one at a time, and runs the tests that should notice.
+
+    tests/mutation/mutation.py BUILD [--only PATTERN] [--sample N] [--engine] [--work FOLDER] [--report FILE]
+
+BUILD is a Release build of this tree. The faults are those of faults.txt. Faults in shaders need no build: a folder that
+holds the faulty file lies over the embedded ones (HELIOGRAPH_SHADER_DIR). Faults in the engine are planted in a copy of
+the tree with a build of its own, only with --engine. Results are kept in FOLDER/results.json, and what is there is not
+run again; delete it to begin anew. Exit 1 where a fault survives that `survivors.txt` does not explain.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+SEPARATOR = "  =>  "
+LIMIT_SECONDS = 900  # of one test; a fault that makes it hang is noticed by that
+
+
+class Fault:
+    def __init__(self, file, tests, text, replacement):
+        self.file, self.tests, self.text, self.replacement = file, tests, text, replacement
+        self.name = f"{file}: {' '.join(text.split())}{SEPARATOR}{' '.join(replacement.split())}"
+
+    def is_shader(self):
+        return self.file.endswith((".glsl", ".comp"))
+
+    def planted(self):
+        source = (ROOT / self.file).read_text()
+        if source.count(self.text) != 1:
+            raise ValueError(f"{self.name}: the text is in the file {source.count(self.text)} times, not once")
+        return source.replace(self.text, self.replacement)
+
+
+def read_catalogue(path):
+    """Faults may go over several lines: one ends where the next has a separator or a section begins."""
+    faults, section, pending = [], None, []
+
+    def finish():
+        joined = "\n".join(pending)
+        pending.clear()
+        if not joined.strip():
+            return
+        text, separator, replacement = joined.partition(SEPARATOR)
+        if not separator or section is None:
+            raise ValueError(f"{path}: no fault: {joined!r}")
+        faults.append(Fault(section[0], section[1], text.strip(), replacement.rstrip("\n").strip()))
+
+    for line in path.read_text().splitlines():
+        head = re.fullmatch(r"\[(\S+) \| (.+)\]", line)
+        if head:
+            finish()
+            section = head[1], [test.split(" ", 1) for test in head[2].split(" ; ")]
+        elif line.startswith("#") and section is None or not line.strip():
+            finish()
+        else:
+            begins = SEPARATOR in "\n".join(pending) and not line.startswith("    ")
+            if begins:
+                finish()
+            pending.append(line)
+    finish()
+    return faults
+
+
+def executable(build, name):
+    found = [path for path in (build / "tests").rglob(name) if path.is_file() and os.access(path, os.X_OK)]
+    return found[0] if found else None
+
+
+def run_test(build, test, environment):
+    """What a test did: "passed", "failed", "hung" or "missing", and the first failed case."""
+    program = executable(build, test[0])
+    if program is None:
+        return "missing", ""
+    command = [program] + ([f"--gtest_filter={test[1]}"] if len(test) > 1 else [])
+    try:
+        done = subprocess.run(command + ["--gtest_fail_fast"], env=environment, cwd=build, capture_output=True,
+                              text=True, errors="replace", timeout=LIMIT_SECONDS)
+    except subprocess.TimeoutExpired:
+        return "hung", ""
+    if done.returncode == 0:
+        if re.search(r"Running 0 tests|\[  SKIPPED \]", done.stdout):
+            return "missing", "the filter finds no case, or one was skipped"
+        return "passed", ""
+    case = re.search(r"\[  FAILED  \] (\S+)", done.stdout)
+    return "failed", case[1] if case else f"exit {done.returncode}"
+
+
+def judge(build, tests, environment):
+    for test in tests:
+        state, detail = run_test(build, test, environment)
+        if state != "passed":
+            return {"state": {"failed": "caught", "hung": "caught"}.get(state, state), "by": test[0], "case": detail}
+    return {"state": "survived"}
+
+
+def shader_environment(work, fault):
+    overlay = work / "overlay"
+    shutil.rmtree(overlay, ignore_errors=True)
+    if fault is not None:
+        (overlay / fault.file).parent.mkdir(parents=True)
+        (overlay / fault.file).write_text(fault.planted())
+    # Caches of its own: faulty kernels do not push out good ones.
+    return dict(os.environ, HELIOGRAPH_SHADER_DIR=str(overlay), XDG_CACHE_HOME=str(work / "cache"),
+                MESA_SHADER_CACHE_DIR=str(work / "mesa"))
+
+
+class EngineCopy:
+    """A copy of the tree, built once, in which one file at a time is faulty."""
+
+    def __init__(self, build, work):
+        self.source, self.build = work / "tree", work / "build"
+        self.fresh = True
+
+    def prepare(self, targets):
+        self.source.mkdir(parents=True, exist_ok=True)
+        listed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z"], check=True, capture_output=True, text=True)
+        for name in filter(None, listed.stdout.split("\0")):
+            copy = self.source / name
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            # Times of files that are the same stay, so that a copy of an earlier run is not built anew.
+            if not copy.exists() or copy.read_bytes() != (ROOT / name).read_bytes():
+                shutil.copy(ROOT / name, copy)
+        subprocess.run(["cmake", "-S", self.source, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
+                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.make(targets)
+
+    def make(self, targets):
+        return subprocess.run(["cmake", "--build", self.build, "-j2", "--target", *targets], capture_output=True,
+                              text=True)
+
+    def run(self, fault, environment):
+        targets = sorted({test[0] for test in fault.tests})
+        if self.fresh:
+            self.prepare(targets)
+            self.fresh = False
+        path = self.source / fault.file
+        good = path.read_text()
+        path.write_text(fault.planted())
+        try:
+            made = self.make(targets)
+            if made.returncode != 0:
+                return {"state": "does not compile", "case": made.stdout[-300:]}
+            return judge(self.build, fault.tests, environment)
+        finally:
+            path.write_text(good)
+
+
+def read_explained(path):
+    """Survivors that are known: "NAME" lines, each followed by indented lines that say why."""
+    return {line for line in path.read_text().splitlines() if line and not line.startswith((" ", "#"))}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="", help="regular expression of the faults' names")
+    parser.add_argument("--sample", type=int, default=0, help="so many, evenly over the shader faults")
+    parser.add_argument("--engine", action="store_true", help="also faults that need a build")
+    parser.add_argument("--work", type=pathlib.Path, help="default BUILD/mutation")
+    parser.add_argument("--report", type=pathlib.Path, help="Markdown")
+    parser.add_argument("--check", action="store_true", help="only whether every fault's text is in its file once")
+    arguments = parser.parse_args()
+    faults = read_catalogue(HERE / "faults.txt")
+    names = [fault.name for fault in faults]
+    assert len(set(names)) == len(names), "a fault is there twice"
+    for fault in faults:
+        fault.planted()
+    explained = read_explained(HERE / "survivors.txt")
+    for name in explained - set(names):
+        sys.exit(f"survivors.txt: no fault is called '{name}'")
+    if arguments.check:
+        print(f"{len(faults)} faults, every text in its file once")
+        return
+    build = arguments.build.resolve()
+    work = (arguments.work or build / "mutation").resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    store = work / "results.json"
+    results = json.loads(store.read_text()) if store.exists() else {}
+
+    chosen = [fault for fault in faults if re.search(arguments.only, fault.name)]
+    if arguments.sample:
+        shaders = [fault for fault in chosen if fault.is_shader()]
+        step = len(shaders) / arguments.sample
+        chosen = [shaders[int(i * step)] for i in range(arguments.sample)]
+    if not arguments.engine:
+        chosen = [fault for fault in chosen if fault.is_shader()]
+    # A fault that a test finds says nothing where the test fails without it.
+    clean = results.setdefault("clean", {})
+    engine = EngineCopy(build, work)
+    for i, fault in enumerate(chosen):
+        if fault.name in results:
+            continue
+        if fault.is_shader():
+            for test in fault.tests:
+                key = " ".join(test)
+                if clean.get(key) != "passed":
+                    clean[key] = run_test(build, test, shader_environment(work, None))[0]
+                if clean[key] != "passed":
+                    sys.exit(f"without any fault the test '{key}' is {clean[key]}")
+        started = time.monotonic()
+        environment = shader_environment(work, fault if fault.is_shader() else None)
+        result = judge(build, fault.tests, environment) if fault.is_shader() else engine.run(fault, environment)
+        result["seconds"] = round(time.monotonic() - started, 1)
+        results[fault.name] = result
+        store.with_suffix(".partial").write_text(json.dumps(results, indent=1))
+        store.with_suffix(".partial").replace(store)
+        print(f"{i + 1}/{len(chosen)} {result['state']:9} {result['seconds']:6.1f} s  {fault.name[:110]}", flush=True)
+
+    run = [fault for fault in chosen if fault.name in results]
+    caught = [fault for fault in run if results[fault.name]["state"] == "caught"]
+    left = [fault for fault in run if results[fault.name]["state"] != "caught"]
+    print(f"{len(caught)} of {len(run)} faults caught ({100 * len(caught) / max(len(run), 1):.1f} %)")
+    for fault in left:
+        print(f"  {results[fault.name]['state']}{' (explained)' if fault.name in explained else ''}: {fault.name}")
+    if arguments.report:
+        lines = ["| file | faults | caught |", "|---|---|---|"]
+        for file in dict.fromkeys(fault.file for fault in run):
+            of_file = [fault for fault in run if fault.file == file]
+            lines.append(f"| {file} | {len(of_file)} | {sum(f in caught for f in of_file)} |")
+        lines.append(f"| all | {len(run)} | {len(caught)} |")
+        arguments.report.write_text("\n".join(lines) + "\n")
+    if any(fault.name not in explained for fault in left):
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
