@@ -7,6 +7,7 @@
  * where an earlier one was stopped. Ends with 1 where a number is not finite or negative.
  */
 #include "tests/accuracy/scattering_extremes.hpp"
+#include "tests/support/device.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -44,6 +45,7 @@ int main(int count, char** arguments) {
             std::fflush(stdout);
         }
     }
+    closeDevice();
     std::printf("%llu samples, %llu faults\n", (unsigned long long)(samples), (unsigned long long)(faults));
     return faults > 0 ? 1 : 0;
 }

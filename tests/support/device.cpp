@@ -38,6 +38,10 @@ Device& device() {
     return *shared;
 }
 
+void closeDevice() {
+    shared.reset();
+}
+
 std::vector<std::string> takeValidationMessages() {
     const std::lock_guard lock(mutex);
     return std::exchange(pending, {});
@@ -69,7 +73,7 @@ int runAllWithDevice() {
     // Appended after the printer, and OnTestEnd runs in reverse order: the printer sees the failure.
     testing::UnitTest::GetInstance()->listeners().Append(new ValidationListener);
     int result = RUN_ALL_TESTS();
-    shared.reset();
+    closeDevice();
     for (const std::string& message : takeValidationMessages()) {
         std::printf("[  FAILED  ] Vulkan validation outside of a test: %s\n", message.c_str());
         result = 1;

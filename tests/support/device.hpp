@@ -19,6 +19,9 @@ DeviceOptions deviceOptions();
  * missing device throws, so that the test fails. */
 Device& device();
 
+/** Closes it. Only for programs without tests, before main() ends: afterwards the driver is gone. */
+void closeDevice();
+
 /** The messages since the last call, taken away: a test that provokes some takes them, so that it does not
  * fail. */
 std::vector<std::string> takeValidationMessages();
