@@ -3,15 +3,14 @@
 #include "passes/film/film.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "passes/scene/device_scene.hpp"
-#include "tests/accuracy/path_scenes.hpp"
 #include "tests/support/device.hpp"
+#include "tests/support/scene_features.hpp"
 #include "tests/support/specialized_kernel.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -19,15 +18,6 @@
 
 namespace helio::test {
 namespace {
-
-/** A box of one grey Lambertian material, seen from inside; no light at all. */
-SceneBuilder plainRoom() {
-    SceneBuilder b;
-    const int grey = b.material(glm::vec3(0.5f));
-    b.room({-1, -1, -1}, {1, 1, 1}, {grey, grey, grey, grey, grey, grey});
-    b.camera({0, 0, 0.9f}, {0, 0, -1}, 1.0f);
-    return b;
-}
 
 struct Built {
     SpecializedKernel code;
@@ -48,135 +38,6 @@ Built build(Scene scene, bool counts = false) {
     }
     return {specialize(tracer.traceKernel().kernel, tracer.traceKernel().constants), uploaded.deviceBytes(),
             tracer.counters()};
-}
-
-/** Gives the room's material a texture of one texel. */
-TextureUse addTexture(Scene& scene, bool floats) {
-    TextureImage image;
-    image.width = image.height = 1;
-    if (floats)
-        image.texels = std::vector<float>{0.5f, 0.25f, 0.75f, 1.0f};
-    else
-        image.texels = std::vector<std::uint8_t>{128, 64, 192, 255};
-    scene.images.push_back(image);
-    Texture texture;
-    texture.image = int(scene.images.size()) - 1;
-    scene.textures.push_back(texture);
-    for (Mesh& mesh : scene.meshes)
-        for (Primitive& p : mesh.primitives) p.texcoords = {std::vector<glm::vec2>(p.positions.size())};
-    TextureUse use;
-    use.texture = int(scene.textures.size()) - 1;
-    return use;
-}
-
-void forAll(Scene& scene, const std::function<void(Primitive&)>& change) {
-    for (Mesh& mesh : scene.meshes)
-        for (Primitive& p : mesh.primitives) change(p);
-}
-
-/** A triangle of a material of its own; returns the material. */
-int another(SceneBuilder& b) {
-    const int material = b.material(glm::vec3(0.5f));
-    b.triangles({{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}}, material);
-    return material;
-}
-
-struct Feature {
-    const char* name;
-    std::function<void(SceneBuilder&)> add;
-    std::vector<std::string> bindings;  ///< that it needs and nothing else does
-};
-
-/** A material that glTF's model makes more than diffuse, to which `change` adds. */
-std::function<void(SceneBuilder&)> glossy(const std::function<void(Material&)>& change) {
-    return [change](SceneBuilder& b) {
-        Material& m = b.scene.materials[0];
-        m.specular = 1;
-        m.roughness = 0.5f;
-        change(m);
-    };
-}
-
-const std::vector<Feature>& features() {
-    static const std::vector<Feature> list = {
-        {"constant surroundings",
-         [](SceneBuilder& b) { b.scene.environment = Environment{glm::vec3(1.0f)}; },
-         {}},
-        {"surroundings of an image",
-         [](SceneBuilder& b) {
-             TextureImage image;
-             image.width = 4;
-             image.height = 2;
-             image.texels = std::vector<float>(32, 1.0f);
-             b.scene.images.push_back(image);
-             b.scene.environment = Environment{glm::vec3(1.0f), 0};
-         },
-         {"uEnvironmentMap"}},
-        {"emissive triangles",
-         [](SceneBuilder& b) {
-             b.triangles({{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}},
-                         b.material(glm::vec3(0.5f), glm::vec3(1.0f)));
-         },
-         {}},
-        {"emission textures",
-         [](SceneBuilder& b) {
-             b.scene.materials[0].emission = glm::vec3(1.0f);
-             b.scene.materials[0].emissiveTexture = addTexture(b.scene, false);
-         },
-         {"uLights", "uTexels8", "uTextures", "uTexcoords"}},
-        {"a point light",
-         [](SceneBuilder& b) {
-             b.pointLight({0, 0, 0}, glm::vec3(1.0f));
-         },
-         {}},
-        {"a choice among lights",
-         [](SceneBuilder& b) {
-             for (int i = 0; i < 3; ++i) b.pointLight({0.1f * float(i), 0, 0}, glm::vec3(1.0f + float(i)));
-         },
-         {"uLights", "uLightSlots"}},
-        {"vertex normals",
-         [](SceneBuilder& b) {
-             forAll(b.scene, [](Primitive& p) { p.normals.assign(p.positions.size(), glm::vec3(0, 0, 1)); });
-         },
-         {"uNormals"}},
-        {"vertex colours",
-         [](SceneBuilder& b) {
-             forAll(b.scene, [](Primitive& p) { p.colors.assign(p.positions.size(), glm::vec4(0.5f)); });
-         },
-         {"uColors"}},
-        {"base colour textures",
-         [](SceneBuilder& b) { b.scene.materials[0].baseColorTexture = addTexture(b.scene, false); },
-         {"uTexels8", "uTextures", "uTexcoords"}},
-        {"textures of floats",
-         [](SceneBuilder& b) { b.scene.materials[0].baseColorTexture = addTexture(b.scene, true); },
-         {"uTexelsFloat", "uTextures", "uTexcoords"}},
-        {"alpha", [](SceneBuilder& b) { b.scene.materials[0].alphaMode = AlphaMode::Blend; }, {}},
-        {"normal maps",
-         [](SceneBuilder& b) { b.scene.materials[0].normalTexture = addTexture(b.scene, false); },
-         {"uTangents", "uTexels8", "uTextures", "uTexcoords"}},
-        {"gloss", glossy([](Material&) {}), {}},
-        {"transmission", glossy([](Material& m) { m.transmission = 0.5f; }), {}},
-        {"clear coat", glossy([](Material& m) { m.clearcoat = 0.5f; }), {}},
-        {"sheen", glossy([](Material& m) { m.sheenColor = glm::vec3(0.5f); }), {}},
-        {"thin films", glossy([](Material& m) { m.iridescence = 0.5f; }), {}},
-        {"anisotropy", glossy([](Material& m) { m.anisotropyStrength = 0.5f; }), {"uTangents"}},
-        {"unlit surfaces",
-         [](SceneBuilder& b) { b.scene.materials[std::size_t(another(b))].unlit = true; },
-         {}},
-        {"mirrors",
-         [](SceneBuilder& b) {
-             Material& m = b.scene.materials[std::size_t(another(b))];
-             m.scattering = Scattering{};
-             m.scattering->model = Scattering::Model::Mirror;
-         },
-         {}},
-        {"a tree",
-         [](SceneBuilder& b) {
-             b.sphere({0, 0, 0}, 0.3f, 2, false, 0);
-         },
-         {"uNodes"}},
-    };
-    return list;
 }
 
 /** The plain room with a feature, built once. */

@@ -2,71 +2,28 @@
  * The price of the general engine: the path tracer's kernel for sample:cornell against one stripped by hand
  * (stripped.comp), run in turn on the same film, state and scene.
  *   bench_price [PAIRS] [SAMPLES] [SIZE]
- * Prints the median of the ratios of CPU time (general / stripped) over the pairs, with its 95 % interval by
- * order statistics. Exit 1 where the pictures differ.
+ *   bench_price features
+ * First: prints the median of the ratios of CPU time (general / stripped) over the pairs, with its 95 %
+ * interval by order statistics. Exit 1 where the pictures differ. Second: what each feature of a scene costs,
+ * see features.hpp.
  */
-#include "passes/film/film.hpp"
-#include "passes/pathtrace/path_tracer.hpp"
-#include "passes/scene/device_scene.hpp"
+#include "tests/bench/price/contender.hpp"
+#include "tests/bench/price/features.hpp"
 
 #include <fmt/format.h>
 #include <heliograph_kernels/price.hpp>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <string_view>
 #include <vector>
 
 namespace {
 
 using namespace helio;
-
-double cpuSeconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-/** A tracer that goes on from run to run. */
-class Contender {
-public:
-    Contender(Device& device, DeviceScene& packed, const Scene& scene, const PlacedCamera& placed,
-              const PathTraceOptions& options)
-        : device_(device),
-          film_(device, options.size[0], options.size[1]),
-          tracer_((clear(), device), packed, scene.cameras[std::size_t(placed.camera)], placed.transform,
-                  options, film_) {}
-    /** CPU seconds of the next samples. */
-    double run(std::uint32_t samples) {
-        end_ += samples;
-        const double start = cpuSeconds();
-        while (!tracer_.advance(end_)) {
-        }
-        return cpuSeconds() - start;
-    }
-    std::vector<glm::vec4> picture() {
-        Graph graph(device_);
-        const ResolvedFilm resolved = declareFilmResolve(graph, film_, film_.import(graph));
-        const auto mean = graph.readback<glm::vec4>(resolved.mean);
-        Plan plan = graph.compile();
-        return mean.wait(plan.execute());
-    }
-
-private:
-    void clear() {
-        Graph graph(device_);
-        declareFilmClear(graph, film_, film_.import(graph));
-        Plan plan = graph.compile();
-        plan.wait(plan.execute());
-    }
-    Device& device_;
-    Film film_;
-    PathTracer tracer_;
-    std::uint32_t end_ = 0;
-};
+using test::Contender;
 
 int compare(std::uint32_t pairs, std::uint32_t samples, std::uint32_t size) {
     Scene scene = load("sample:cornell");
@@ -112,6 +69,7 @@ int main(int argc, char** argv) {
         return argc > i ? std::uint32_t(std::max(1, std::atoi(argv[i]))) : fallback;
     };
     try {
+        if (argc > 1 && std::string_view(argv[1]) == "features") return test::printFeaturePrices();
         return compare(argument(1, 101), argument(2, 16), argument(3, 256));
     } catch (const std::exception& error) {
         fmt::print(stderr, "bench_price: {}\n", error.what());
