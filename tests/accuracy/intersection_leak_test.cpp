@@ -151,5 +151,23 @@ TEST(Intersection, CoincidentTrianglesGiveTheFirst) {
     });
 }
 
+/** Hits lie within (0, limit): a ray that starts in a triangle's plane does not meet it there. */
+TEST(Intersection, WhatARayStartsInIsNotMet) {
+    // A second triangle, far off, so that there is a tree.
+    const PackedScene packed =
+        packScene(sceneOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}}));
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(0.05f, 0.45f);
+    for (const RayQuestion question : {RayQuestion::Closest, RayQuestion::Any}) {
+        const auto next = [&] {
+            return Ray{
+                .origin = {unit(random), unit(random), 0}, .limit = 4, .direction = {0.25f, 0.125f, 1}};
+        };
+        sendRays(packed, question, 1e4, next, [&](const auto&, const auto& hits) {
+            for (const RayHit& hit : hits) ASSERT_EQ(hit.slot, -1) << "at " << hit.distance;
+        });
+    }
+}
+
 }  // namespace
 }  // namespace helio::test
