@@ -72,10 +72,8 @@ def marked(name, record):
 
 
 def renew(page):
-    """The page's text with all figures as they are recorded."""
+    """The page's text with all figures as they are recorded; one that is not stays as it is."""
     def replace(match):
         record = load(match[1])
-        if record is None:
-            raise ValueError(f"{page}: no figure '{match[1]}' is recorded")
-        return marked(match[1], record)
+        return match[0] if record is None else marked(match[1], record)
     return re.sub(r"<!-- figure (\w+):.*?<!-- /figure -->", replace, page.read_text(), flags=re.S)
