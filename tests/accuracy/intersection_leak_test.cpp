@@ -169,5 +169,21 @@ TEST(Intersection, WhatARayStartsInIsNotMet) {
     }
 }
 
+/** Nor does it meet the triangle that it is told to leave, wherever it starts. */
+TEST(Intersection, TheTriangleARayLeavesIsPassed) {
+    const PackedScene packed =
+        packScene(sceneOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}}));
+    std::int32_t source = -1;
+    for (const float expected : {1.0f, 6.0f}) {
+        const auto next = [&] {
+            return Ray{.origin = {0.25f, 0.25f, -1}, .direction = {0, 0, 1}, .source = source};
+        };
+        sendRays(packed, RayQuestion::Closest, 64, next, [&](const auto&, const auto& hits) {
+            for (const RayHit& hit : hits) ASSERT_EQ(hit.distance, expected);
+            source = hits[0].slot;
+        });
+    }
+}
+
 }  // namespace
 }  // namespace helio::test
