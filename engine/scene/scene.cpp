@@ -139,6 +139,15 @@ std::vector<PlacedLight> Scene::placedLights() const {
     return placed;
 }
 
+std::vector<PlacedMeter> Scene::placedMeters() const {
+    std::vector<PlacedMeter> placed;
+    visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
+        checkReference(*this, index, "meter", node.meter, meters.size());
+        if (node.meter >= 0) placed.push_back({index, node.meter, toWorld});
+    });
+    return placed;
+}
+
 Scene::Bounds Scene::bounds() const {
     std::vector<Bounds> boxes;
     for (const Mesh& mesh : meshes) boxes.push_back(objectBounds(mesh));

@@ -46,6 +46,10 @@ public:
             check(scene_.cameras[i], fmt::format("camera {}", i));
         for (std::size_t i = 0; i < scene_.lights.size(); ++i)
             check(scene_.lights[i], fmt::format("light {}", i));
+        for (std::size_t i = 0; i < scene_.meters.size(); ++i) {
+            number(fmt::format("meter {}", i), "width", scene_.meters[i].width, smallest, largest);
+            number(fmt::format("meter {}", i), "height", scene_.meters[i].height, smallest, largest);
+        }
         if (scene_.environment) {
             light("environment", "radiance", scene_.environment->radiance);
             index("environment", "image", scene_.environment->image, scene_.images.size(), -1);
@@ -414,6 +418,7 @@ private:
         for (const Instance& instance : scene_.instances()) transform(instance.node, instance.transform);
         for (const PlacedCamera& camera : scene_.placedCameras()) transform(camera.node, camera.transform);
         for (const PlacedLight& light : scene_.placedLights()) transform(light.node, light.transform);
+        for (const PlacedMeter& meter : scene_.placedMeters()) transform(meter.node, meter.transform);
     }
 
     static constexpr double largest = std::numeric_limits<float>::max();

@@ -1,4 +1,4 @@
-#include "engine/verify/photometry.hpp"
+#include <heliograph/photometry.hpp>
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace helio::verify {
+namespace helio {
 namespace {
 
 constexpr double first = 360, last = 830, step = 5;
@@ -51,4 +51,4 @@ double photometric(std::span<const double> wavelengths, std::span<const double> 
     return kLuminousEfficacy * sum;
 }
 
-}  // namespace helio::verify
+}  // namespace helio

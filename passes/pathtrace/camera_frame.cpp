@@ -3,6 +3,7 @@
 #include "engine/scene/lens_table.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace helio {
 namespace {
@@ -64,6 +65,21 @@ CameraFrame cameraFrame(const Camera& camera, const glm::dmat4& transform, doubl
     frame.right = glm::vec4(glm::vec3(right * width), 0.0f);
     frame.up = glm::vec4(glm::vec3(up * height), 0.0f);
     frame.forward = glm::vec4(glm::vec3(forward), 0.0f);
+    return frame;
+}
+
+CameraFrame meterFrame(const Meter& meter, const glm::dmat4& transform, const glm::dvec3& extent) {
+    CameraFrame frame = cameraFrame(Camera{}, transform, 1.0);
+    const bool isPoint =
+        meter.quantity == Meter::Quantity::Irradiance || meter.quantity == Meter::Quantity::Radiance;
+    const glm::dvec3 forward(frame.forward);
+    const double offset = 0x1.4p-21 * glm::dot(glm::abs(forward), extent);  // 10 * 2^-24, see offset.glsl
+    frame.origin += glm::vec4(glm::vec3(forward * offset), 0.0f);
+    for (auto& [side, length] : {std::pair{&frame.right, meter.width}, std::pair{&frame.up, meter.height}})
+        *side = glm::vec4(glm::normalize(glm::vec3(*side)) * (isPoint ? 0.0f : 0.5f * length), 0.0f);
+    const bool hemisphere =
+        meter.quantity == Meter::Quantity::Irradiance || meter.quantity == Meter::Quantity::Flux;
+    frame.forward.w = hemisphere ? 1.0f : 0.0f;
     return frame;
 }
 

@@ -26,6 +26,10 @@ struct CameraFrame {
  * in double. */
 CameraFrame cameraFrame(const Camera& camera, const glm::dmat4& transform, double aspect);
 
+/** The frame of a placed meter: right and up are half its sides, w of forward is 1 where light from all sides
+ * counts. It is moved forward by the rounding of points whose coordinates are at most `extent`. */
+CameraFrame meterFrame(const Meter& meter, const glm::dmat4& transform, const glm::dvec3& extent);
+
 /** When the rows of the image are exposed, as parts of the whole time that is rendered: row j of h from
  * (j + 1/2) / h * `rolling` on, for `open`. */
 struct ShutterTimes {

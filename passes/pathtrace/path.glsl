@@ -28,7 +28,13 @@ layout(constant_id = 7) const bool HEMISPHERE = false;  ///< directions are unif
 /** Roulette keeps a path with chance min(1, ROULETTE * throughput): chances near the throughput itself end
  * paths that would still have carried light cheaply. The first scattering is spared: dark surfaces would show
  * black pixels under a sky, at 2.3 times the cost for the same error (FlightHelmet in a white furnace). */
-const float ROULETTE = 3.0;
+layout(constant_id = 9) const float ROULETTE = 3.0;
+layout(constant_id = 17) const float SURVIVAL = 0.0;  ///< above 0: the chance itself, whatever the throughput
+
+/** With what chance a path of this throughput goes on. */
+float rouletteChance(float throughput) {
+    return SURVIVAL > 0.0 ? (throughput > 0.0 ? SURVIVAL : 0.0) : min(1.0, ROULETTE * throughput);
+}
 
 struct Path {
     vec3 origin;
@@ -134,7 +140,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     path.origin = leaving(s, next.direction);
     path.source = slot;
     path.depth += 1u;
-    const float keep = path.depth < 2u ? 1.0 : min(1.0, ROULETTE * largestOf(path.throughput));
+    const float keep = path.depth < 2u ? 1.0 : rouletteChance(largestOf(path.throughput));
     alive = alive && next.goes && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;

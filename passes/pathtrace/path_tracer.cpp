@@ -52,7 +52,9 @@ struct PathTracer::Impl {
         : device_(device),
           scene_(sceneIn),
           options_(optionsIn),
-          frame_(cameraFrame(camera, transform, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
+          frame_(optionsIn.meter
+                     ? meterFrame(*optionsIn.meter, transform, optionsIn.meterExtent)
+                     : cameraFrame(camera, transform, double(optionsIn.size[0]) / double(optionsIn.size[1]))),
           camera_(cameraTable(camera, double(optionsIn.size[0]) / double(optionsIn.size[1]),
                               optionsIn.shutter, optionsIn.cameraPoses)),
           orthographic_(!camera.perspective),
@@ -145,6 +147,7 @@ struct PathTracer::Impl {
             spec.merge(bounces_->constants());
             bounces.push_back({"uBounces", bounces_->import(graph)});
         }
+        if (options_.meter) defines["METER"] = "1";
         std::vector<Binding> patches;
         if (options_.radiosity) {
             assert(options_.maxDepth == 0 && options_.patches != nullptr);
@@ -158,6 +161,8 @@ struct PathTracer::Impl {
             options_.sampler == SamplerKind::Stratified || options_.sampler == SamplerKind::SobolBlue;
         // Of the two halves of a pixel's samples each.
         if (usesStrata) spec["SAMPLER_STRATA"] = std::uint32_t(std::bit_width((options_.samples - 1) / 2));
+        if (options_.roulette != PathTraceOptions{}.roulette) spec["ROULETTE"] = float(options_.roulette);
+        if (options_.survival > 0) spec["SURVIVAL"] = float(options_.survival);
         spec["WHITTED"] = options_.whitted;
         spec["HEMISPHERE"] = options_.hemisphere;
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
@@ -193,6 +198,9 @@ struct PathTracer::Impl {
                        options_.maxDepth >= kUnlimitedDepth ? 1u : 0u,
                        options_.turnBudget,
                        begun_ ? 0u : 1u};
+        // What a meter receives counts as the first scattering.
+        if (options_.meter && frame_.forward.w > 0.5f)
+            parameters_.maxDepth = std::min(parameters_.maxDepth + 1, kUnlimitedDepth);
         begun_ = true;
         const Execution execution = plan_.execute();
         last_ = counted_.wait(execution).at(0);

@@ -23,6 +23,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,8 +40,9 @@ struct PathTraceOptions {
     std::uint32_t maxDepth = kUnlimitedDepth;    ///< scatterings at most: 0 emission only, 1 direct light
     bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
     AcceleratorKind accelerator = AcceleratorKind::Auto;
-    bool whitted = false;     ///< paths go on from mirrors and smooth refraction only
-    bool hemisphere = false;  ///< directions are uniform over the hemisphere
+    bool whitted = false;               ///< paths go on from mirrors and smooth refraction only
+    bool hemisphere = false;            ///< directions are uniform over the hemisphere
+    double roulette = 3, survival = 0;  ///< see RenderOptions
     SamplerKind sampler = SamplerKind::Sobol;
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;
@@ -52,6 +54,10 @@ struct PathTraceOptions {
     std::uint32_t seed = 0;
     bool adaptive = false;  ///< each pixel has its own number of samples, see setSampleEnds()
     int bounces = -1;       ///< light of up to so many scatterings is also summed apart, see bounceLayers()
+    /** What is rendered is a meter's paths, placed by the camera's transform, in as many strata as there are
+     * pixels; a scene whose coordinates are at most `meterExtent`. */
+    std::optional<Meter> meter = {};
+    glm::dvec3 meterExtent{0.0};
     /** Surfaces shine with what `patches` has solved and give off nothing else; for a maxDepth of 0. */
     bool radiosity = false;
     RadiosityPass* patches = nullptr;  ///< need not be there for packOptions()

@@ -73,6 +73,9 @@ float pathTime(PixelSampler numbers, uvec2 pixel) {
 }
 #endif
 
+#ifdef METER
+#include "passes/pathtrace/meter.glsl"
+#else
 Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     Path path;
     const vec2 place = vec2(pixel) + 0.5 + filterOffset(FILTER_KIND, sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER));
@@ -93,6 +96,7 @@ Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     path.lightPlace = 0;
     return path;
 }
+#endif
 
 void main() {
     const uvec2 pixel = tilePixel(parameters.size);
@@ -175,6 +179,10 @@ void main() {
             cameraRays += next < sampleEnd ? 1u : 0u;
         }
         spent += 1u + LOOP_TURNS + uint(LENS_SURFACES);
+#ifdef METER
+        spent += meterTurns;
+        meterTurns = 0u;
+#endif
         if (COUNT_TURNS) {
             abandonedRays += (closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u) + (shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u);
             spent += uint(subgroupMax(closestTurns) + subgroupMax(shadowTurns));

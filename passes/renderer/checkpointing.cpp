@@ -42,6 +42,7 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"depth limit", std::to_string(options.maxDepth)},
             {"pixel filter", std::to_string(int(options.filter))},
             {"integrator", std::to_string(int(options.integrator))},
+            {"roulette", fmt::format("{} {}", options.roulette, options.survival)},
             {"patches", std::to_string(options.radiosityPatches)},
             {"sampler", std::to_string(int(options.sampler))},
             {"adaptive sampling", options.adaptive ? "on" : "off"},

@@ -23,7 +23,7 @@ Scene withoutMeshes(const Scene& scene) {
     bare.roots = scene.roots;
     bare.animations = scene.animations;
     for (Node& node : bare.nodes) {
-        node.mesh = node.light = node.skin = -1;
+        node.mesh = node.light = node.skin = node.meter = -1;
         node.weights.clear();
         node.copies.clear();
     }

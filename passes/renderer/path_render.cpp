@@ -7,6 +7,7 @@
 #include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
+#include "passes/renderer/meters.hpp"
 #include "passes/renderer/sample_schedule.hpp"
 
 #include <heliograph/error.hpp>
@@ -281,6 +282,8 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
     result.whitted = options.integrator == Integrator::Whitted;
     result.hemisphere = options.integrator == Integrator::Hemisphere;
     if (result.hemisphere) result.nextEventEstimation = false;
+    result.roulette = options.roulette;
+    result.survival = options.survival;
     result.sampler = options.sampler;
     result.samples = options.samples;
     result.lights = options.lights;
@@ -311,6 +314,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     target.resolve();
     FirstHits hits;
     if (job.options.auxiliary || job.options.denoise) hits = tracer.firstHits();
+    MeterReader meters(device, scene, view, traceOptions);
     const std::vector<PassTiming> compiling = tracer.timings();
     if (!job.notify({.stage = "compile"})) return;
     Checkpointing checkpoints(device, tracer, target.film(), scene.identity, view, job);
@@ -318,6 +322,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     if (radiosity && !solveRadiosity(*radiosity, job)) return;
 
     result.samples = PathLoop(tracer, target, checkpoints, job, device.info().type == "cpu").run();
+    if (!result.cancelled) meters.read(job);
     const FilmImages film = target.resolve();
     result.error = estimateError(film);
     if (radiosity) result.error.reliable = false;  // it knows nothing of the patches

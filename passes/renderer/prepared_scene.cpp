@@ -105,7 +105,7 @@ View chooseView(const Scene& scene, const std::string& nameOrIndex, double aspec
     bare.cameras = scene.cameras;
     bare.nodes = scene.nodes;
     bare.roots = scene.roots;
-    for (Node& node : bare.nodes) node.mesh = node.light = -1;
+    for (Node& node : bare.nodes) node.mesh = node.light = node.meter = -1;
     const PlacedCamera placed = chooseCamera(bare, nameOrIndex, aspect);
     return viewOf(bare, placed);
 }

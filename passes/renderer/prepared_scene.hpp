@@ -58,6 +58,7 @@ struct View {
     glm::dmat4 transform{1.0};
     std::vector<glm::dmat4> poses;  ///< while the shutter is open, where it moves
     ShutterTimes shutter;           ///< where anything moves
+    std::vector<std::pair<Meter, glm::dmat4>> meters = {};
 };
 /** The camera to render with, by chooseCamera's rules, for an image of this aspect (width / height). */
 View chooseView(const Scene& scene, const std::string& nameOrIndex, double aspect);

@@ -81,6 +81,10 @@ void check(const RenderOptions& options) {
            fmt::format("{} samples per pixel, of which some pixels would take 16 times as many",
                        options.samples),
            "give at most 1048575");
+    refuse(!(options.roulette >= 1e-3 && options.roulette <= 1e30), "roulette",
+           fmt::format("{}", options.roulette), "give 0.001 or more");
+    refuse(!(options.survival >= 0 && options.survival <= 1), "survival", fmt::format("{}", options.survival),
+           "give a chance of up to 1, or 0 for none");
     refuse(options.radiosityPatches == 0 || options.radiosityPatches > kMostPatches, "radiosityPatches",
            fmt::format("{} patches", options.radiosityPatches), "give 1 to 2048");
     refuse(options.integrator == Integrator::Radiosity && (options.maxDepth >= 0 || options.bounces >= 0),
@@ -188,6 +192,16 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
     job.result.features = prepared.features;
     job.result.skipped = prepared.skipped;
     job.result.skipped.insert(job.result.skipped.end(), motion.skipped.begin(), motion.skipped.end());
+    for (const PlacedMeter& placed : scene.placedMeters()) {
+        view.meters.emplace_back(scene.meters[std::size_t(placed.meter)], placed.transform);
+        view.meters.back().second[3] -= glm::dvec4(prepared.origin, 0.0);
+    }
+    const bool readsMeters = path && options.integrator != Integrator::Radiosity &&
+                             options.integrator != Integrator::AmbientOcclusion;
+    if (!readsMeters && !view.meters.empty()) {
+        view.meters.clear();
+        job.result.skipped.emplace_back("meters", "they are read by integrators that follow paths of light");
+    }
     job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
     warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
     if (!job.notify({.stage = "compile"})) return;

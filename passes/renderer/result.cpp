@@ -10,6 +10,16 @@
 
 namespace helio {
 
+std::string_view MeterReading::quantityName() const {
+    return std::array{"irradiance", "flux", "radiance", "intensity"}[std::size_t(quantity)];
+}
+std::string_view MeterReading::unit() const {
+    return std::array{"W/m^2", "W", "W/(sr m^2)", "W/sr"}[std::size_t(quantity)];
+}
+std::string_view MeterReading::photometricUnit() const {
+    return std::array{"lx", "lm", "cd/m^2", "cd"}[std::size_t(quantity)];
+}
+
 std::string RenderResult::json() const {
     using Json = nlohmann::ordered_json;
     Json passTimes = Json::array(), skippedParts = Json::array();
@@ -50,6 +60,15 @@ std::string RenderResult::json() const {
                                    {"converged", radiosity->converged}};
         if (radiosity->denseDifference)
             statistics["radiosity"]["dense_difference"] = *radiosity->denseDifference;
+    }
+    for (const MeterReading& meter : meters) {
+        statistics["meters"].push_back({{"name", meter.name},
+                                        {"quantity", meter.quantityName()},
+                                        {"unit", meter.unit()},
+                                        {"value", meter.value},
+                                        {"standard_error", meter.error},
+                                        {"photometric", meter.photometric},
+                                        {"photometric_unit", meter.photometricUnit()}});
     }
     // Names come from files and may not be UTF-8; numbers that JSON has no text for become null.
     return statistics.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -151,6 +151,12 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
                           ? fmt::format(", {:.2g} from the dense solution", *radiosity.denseDifference)
                           : "");
         }
+        for (const MeterReading& meter : result.meters) {
+            const auto& [r, g, b] = meter.value;
+            printLine("meter    {}: {} {:.6g} {:.6g} {:.6g} {} (+- {:.2g}), {:.4g} {}", meter.name,
+                      meter.quantityName(), r, g, b, meter.unit(), *std::ranges::max_element(meter.error),
+                      meter.photometric, meter.photometricUnit());
+        }
     } else {
         printLine("error    not measured");
     }
@@ -174,7 +180,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
             throw CLI::ValidationError("--adaptive", "needs a sampler that does not correlate neighbours");
         }
         if (options.integrator == Integrator::Radiosity) {
-            for (const char* option : {"--max-depth", "--lights", "--no-nee", "--bounces"})
+            for (const char* option :
+                 {"--max-depth", "--lights", "--no-nee", "--bounces", "--roulette", "--survival"})
                 if (command.count(option) > 0)
                     throw CLI::ValidationError(option, "is there for integrators that follow paths");
         } else if (command.count("--patches") > 0) {
@@ -208,8 +215,8 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
          {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
-          "--sampler", "--integrator", "--patches", "--lights", "--no-nee", "--accelerator", "--bounces",
-          "--checkpoint", "--resume"}) {
+          "--sampler", "--integrator", "--patches", "--roulette", "--survival", "--lights", "--no-nee",
+          "--accelerator", "--bounces", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,
@@ -477,6 +484,13 @@ void addRenderCommand(CLI::App& app, Command& run) {
                             {"power", LightChoice::Power},
                             {"uniform", LightChoice::Uniform}},
                            "Choice among lights: adaptive (default) by place and normal; power; uniform");
+    command
+        ->add_option("--roulette", options.roulette,
+                     "Paths go on with the chance min(1, this times their throughput), default 3")
+        ->check(CLI::Range(1e-3, 1e30));
+    command->add_option("--survival", options.survival, "That chance itself, whatever the throughput")
+        ->check(CLI::Range(1e-3, 1.0))
+        ->excludes("--roulette");
     command->add_flag("--no-nee", arguments->noNextEvent, "Trace without next-event estimation");
     addChoice<AcceleratorKind>(
         command, "--accelerator", options.accelerator,

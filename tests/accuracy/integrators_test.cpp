@@ -123,6 +123,76 @@ TEST(Integrators, WhittedFollowsMirrors) {
     EXPECT_EQ(render(b.scene, Integrator::Direct, 64).value, 0.0);
 }
 
+/** Reflections of a ray in the plane between two half-planes from the origin, at angles 0 and `wedge`: what
+ * remains to be turned until it leads away, in double precision. */
+int reflections(glm::dvec2 p, glm::dvec2 d, double wedge) {
+    const glm::dvec2 sides[] = {{1, 0}, {std::cos(wedge), std::sin(wedge)}};
+    for (int count = 0;; ++count) {
+        double nearest = 1e300;
+        int met = -1;
+        for (int i = 0; i < 2; ++i) {
+            const glm::dvec2 normal(-sides[i].y, sides[i].x);
+            const double t = -glm::dot(p, normal) / glm::dot(d, normal);
+            if (t > 1e-9 && t < nearest && glm::dot(p + t * d, sides[i]) > 0) {
+                nearest = t;
+                met = i;
+            }
+        }
+        if (met < 0) return count;
+        const glm::dvec2 normal(-sides[met].y, sides[met].x);
+        p += nearest * d;
+        d -= 2 * glm::dot(d, normal) * normal;
+    }
+}
+
+/** Two mirrors that halve light make a wedge of 60 degrees under a sky of 1: a ray that is turned n times
+ * shows 2^-n, and nothing where paths are cut before that. */
+TEST(Integrators, TwoMirrorsTurnARayAsOftenAsGeometrySays) {
+    constexpr double wedge = kPi / 3;
+    SceneBuilder b;
+    Material mirror;
+    mirror.scattering = Scattering{.model = Scattering::Model::Mirror};
+    mirror.baseColor = glm::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+    b.scene.materials.push_back(mirror);
+    const int half = int(b.scene.materials.size()) - 1;
+    const glm::vec3 far(1000 * float(std::cos(wedge)), 1000 * float(std::sin(wedge)), 0), z(0, 0, 1000);
+    b.quad(-z, glm::vec3(1000, 0, 0) - z, glm::vec3(1000, 0, 0) + z, z, half);
+    b.quad(-z, far - z, far + z, z, half);
+    const glm::vec3 eye(3, 1.2f, 0);
+    b.camera(eye, {0.6f, 0.3f, 0}, 0.9f, {0, 0, 1});
+    b.scene.environment = Environment{glm::vec3(1.0f), -1};
+    for (const Integrator integrator : {Integrator::Whitted, Integrator::Path}) {
+        for (const std::int64_t depth : {-1, 2}) {
+            RenderOptions o;
+            o.size = {64, 4};
+            o.samples = 4;
+            o.integrator = integrator;
+            o.maxDepth = depth;
+            o.roulette = 1e9;  // no noise
+            const RenderResult result = renderer().render(b.scene, o);
+            const glm::dvec3 forward = glm::normalize(glm::dvec3(glm::vec3(0.6f, 0.3f, 0) - eye)),
+                             right = glm::cross(forward, glm::dvec3(0, 0, 1));
+            const double width = 16 * std::tan(0.45);
+            int seen[4] = {};
+            for (std::uint32_t x = 0; x < 64; ++x) {
+                const auto countAt = [&](double place) {
+                    const glm::dvec3 d = forward + (place / 32 - 1) * width * right;
+                    return reflections(glm::dvec2(glm::dvec3(eye)), glm::dvec2(d), wedge);
+                };
+                const int count = countAt(x);
+                if (count != countAt(x + 1) || count != countAt(x + 0.5)) continue;  // an edge
+                ++seen[std::min(count, 3)];
+                const double truth = depth >= 0 && count > depth ? 0.0 : std::pow(0.5, count);
+                for (std::uint32_t y = 0; y < 4; ++y)
+                    EXPECT_NEAR(double(result.image.at(x, y, 0)), truth, 1e-6) << x << ", " << count;
+            }
+            fmt::print("pixels turned 0 to 3 times: {} {} {} {}\n", seen[0], seen[1], seen[2], seen[3]);
+            EXPECT_GT(seen[2], 0);
+            EXPECT_GT(seen[3], 0);
+        }
+    }
+}
+
 /** A floor beside a long wall of height h sees 1 - F of the sky; an open one all; a closed room none. */
 TEST(Integrators, AmbientOcclusion) {
     const auto floorBeside = [](float height) {

@@ -66,6 +66,12 @@ expect 'radiosity refuses a depth' 2 'max-depth: is there for' "$program" render
 expect 'patches without radiosity' 2 'patches: is there for' "$program" render sample:cornell --patches 99
 expect 'radiosity of what is not diffuse' 1 'not Lambertian' "$program" render sample:plates --size 8x8 --integrator radiosity
 expect 'radiosity compares its two solutions' 0 'from the dense solution' "$program" render sample:cornell --size 16x16 --spp 1 --integrator radiosity --patches 64
+echo '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"extensionsUsed":["KHR_lights_punctual"],
+    "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":4}]}},
+    "nodes":[{"name":"cell","extras":{"heliograph":{"meter":{"quantity":"irradiance"}}}},
+    {"translation":[0,0,-2],"extensions":{"KHR_lights_punctual":{"light":0}}}]}' >meter.gltf
+expect 'a meter is read' 0 'meter    cell: irradiance 1 1 1 W/m\^2 .*, 683 lx' "$program" render meter.gltf --size 8x8 --spp 4 --stats meter.json
+check 'its reading is in the statistics' grep -q '"quantity": "irradiance"' meter.json
 expect 'whitted refuses --no-nee' 2 'no-nee: leaves' "$program" render sample:cornell --integrator whitted --no-nee
 expect 'a size of lights without pcss is refused' 2 'light-size: is there for' "$program" render sample:cornell --pipeline raster --light-size 1
 expect 'a checkpoint in no folder is refused before rendering' 1 'no-such-folder' "$program" render sample:cornell --checkpoint no-such-folder/x

@@ -73,6 +73,34 @@ TEST_F(GltfExtras, ExamplesOfTheSchemaLoad) {
     }
 }
 
+TEST_F(GltfExtras, NodesHoldMeters) {
+    const auto withMeter = [this](const json& meter) {
+        GltfDocument file = GltfDocument::triangle();
+        file.doc["nodes"][0]["name"] = "cell";
+        file.doc["nodes"][0]["extras"] = {{"heliograph", {{"meter", meter}}}};
+        const Scene scene = load(file);
+        EXPECT_NO_THROW(scene.validate());
+        EXPECT_EQ(scene.placedMeters().size(), 1u);
+        return scene.meters.at(0);
+    };
+    std::vector<std::string> names;
+    for (const auto& [name, quantity] : {std::pair{"irradiance", Meter::Quantity::Irradiance},
+                                         {"flux", Meter::Quantity::Flux},
+                                         {"radiance", Meter::Quantity::Radiance},
+                                         {"intensity", Meter::Quantity::Intensity}}) {
+        EXPECT_EQ(withMeter({{"quantity", name}}).quantity, quantity);
+        names.emplace_back(name);
+    }
+    EXPECT_EQ(schema()["definitions"]["meter"]["properties"]["quantity"]["enum"], names);
+    const Meter meter = withMeter(schema()["definitions"]["node"]["properties"]["meter"]["examples"][0]);
+    EXPECT_EQ(meter.name, "cell");
+    EXPECT_EQ(meter.width, 0.5f);
+    EXPECT_EQ(meter.height, 0.25f);
+    EXPECT_THROW(withMeter({{"quantity", "irradiance"}, {"width", 1}}), InputError);
+    EXPECT_THROW(withMeter({{"quantity", "flux"}, {"width", 0}}), InputError);
+    EXPECT_THROW(withMeter({{"quantity", "colour"}}), InputError);
+}
+
 class GltfCameraExtras : public GltfExtras {
 protected:
     Camera withCamera(const json& own, const std::string& type = "perspective") const {
@@ -219,7 +247,12 @@ TEST_F(GltfExtras, FaultsAreNamedWithPointerFaultAndRemedy) {
          "/scenes/0/extras/heliograph/environment/radiance/1",
          "",
          "three numbers, red, green and blue"},
-        {"/nodes/0/extras/heliograph", json::object(), "/nodes/0/extras/heliograph", "a node",
+        {"/nodes/0/extras/heliograph/meter",
+         {{"quantity", "colour"}},
+         "/nodes/0/extras/heliograph/meter/quantity",
+         "",
+         "one of irradiance"},
+        {"/meshes/0/extras/heliograph", json::object(), "/meshes/0/extras/heliograph", "a mesh",
          "leave it out"},
         {"/extras/heliograph", json::object(), "/extras/heliograph", "an asset", "leave it out"},
     };

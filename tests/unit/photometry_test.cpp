@@ -1,12 +1,12 @@
 // Photometric quantities of radiometric spectra.
-#include "engine/verify/photometry.hpp"
+#include <heliograph/photometry.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace helio::verify {
+namespace helio {
 namespace {
 
 TEST(Photometry, TheObserver) {
@@ -43,4 +43,4 @@ TEST(Photometry, MonochromaticLightIs683LumensPerWatt) {
 }
 
 }  // namespace
-}  // namespace helio::verify
+}  // namespace helio

@@ -9,6 +9,7 @@
 #include <heliograph/graph.hpp>
 #include <heliograph/image.hpp>
 #include <heliograph/kernel.hpp>
+#include <heliograph/photometry.hpp>
 #include <heliograph/pose.hpp>
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>

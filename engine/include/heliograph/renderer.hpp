@@ -125,6 +125,11 @@ struct RenderOptions {
     double maxSeconds = 0;       ///< stop after so many rendering seconds; 0 never
     std::int64_t maxDepth = -1;  ///< scatterings; negative: unlimited (65,536)
     PixelFilter filter = PixelFilter::Box;
+    /** From the second scattering on a path goes on with the chance min(1, roulette * throughput), that of
+     * its brightest channel, and is worth the more. Changes time and noise, not the mean. */
+    double roulette = 3;
+    /** Above 0: the chance itself, whatever the throughput. */
+    double survival = 0;
     SamplerKind sampler = SamplerKind::Sobol;
     Integrator integrator = Integrator::Path;
     /** Integrator::Radiosity: parts that the surfaces are cut into, about; up to 2048, and no fewer than
@@ -188,6 +193,21 @@ struct ErrorEstimate {
     bool reliable = false;
 };
 
+/** What one of the scene's meters reads: the mean over 256 times RenderOptions::samples paths, whatever
+ * limits of time or error say. */
+struct MeterReading {
+    std::string name;  ///< the meter's
+    Meter::Quantity quantity = Meter::Quantity::Irradiance;
+    std::array<double, 3> value{};  ///< R G B, in the quantity's unit
+    std::array<double, 3> error{};  ///< standard error of each
+    /** lx, lm, cd/m^2 or cd: 683 lm/W times the luminance of R G B, the convention of renderers without
+     * spectra. */
+    double photometric = 0;
+    std::string_view quantityName() const;     ///< "irradiance", ...
+    std::string_view unit() const;             ///< "W/m^2", ...
+    std::string_view photometricUnit() const;  ///< "lx", ...
+};
+
 /** What a render returns: the image and every number about it (contract: statistics). */
 struct RenderResult {
     ImageF image;  ///< linear; R G B and the auxiliary channels
@@ -236,6 +256,8 @@ struct RenderResult {
         std::optional<double> denseDifference;
     };
     std::optional<Radiosity> radiosity;
+    /** Of the scene's meters, in the order of their nodes; not of those under `skipped`. */
+    std::vector<MeterReading> meters;
     /** Relative standard error of each pixel, R G B: the root of its expected part in relMSE. Empty unless
      * asked for. */
     ImageF errorMap;

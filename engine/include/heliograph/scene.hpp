@@ -177,6 +177,23 @@ struct PunctualLight {
     float outerConeAngle = 0.7853982f;
 };
 
+/** An instrument that reads the scene's light, placed by a node: it faces along the node's -Z as cameras do,
+ * the node's scale does not count, and it hides nothing. The path pipeline reads it, see
+ * RenderResult::meters. */
+struct Meter {
+    enum class Quantity : std::uint8_t {
+        Irradiance,  ///< W/m^2 that arrive at a point from before it
+        Flux,        ///< W that arrive on a rectangle from before it
+        Radiance,    ///< W/(sr m^2) that arrive at a point along the axis
+        /** W/sr that what lies before the rectangle gives off towards it, as seen from infinitely far: all
+         * that rays through the rectangle along the axis meet. Punctual lights show in none. */
+        Intensity
+    };
+    std::string name;
+    Quantity quantity = Quantity::Irradiance;
+    float width = 1, height = 1;  ///< of the rectangle, along the node's X and Y
+};
+
 /** Translation, rotation and scale, applied from right to left. */
 struct Placement {
     glm::vec3 translation{0.0f};
@@ -230,6 +247,7 @@ struct Node {
     /** Where the mesh stands in the world, whatever the hierarchy says: a point that its vertices are
      * relative to. For meshes whose vertices a skin placed. */
     std::optional<glm::dvec3> meshOrigin;
+    int meter = -1;  ///< into Scene::meters
     glm::dmat4 localTransform() const;
 };
 
@@ -261,6 +279,11 @@ struct PlacedLight {
     int light = -1;
     glm::dmat4 transform{1.0};
 };
+struct PlacedMeter {
+    int node = -1;
+    int meter = -1;
+    glm::dmat4 transform{1.0};
+};
 
 struct Scene {
     std::string name;  ///< as reported: file name or sample:NAME
@@ -275,6 +298,7 @@ struct Scene {
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     std::vector<std::string> variants;  ///< names that Primitive::variantMaterials counts by
+    std::vector<Meter> meters;
     std::optional<Environment> environment;
     /** What the importer read over, as "WHAT: WHY" pairs for the statistics. */
     std::vector<std::pair<std::string, std::string>> skipped;
@@ -289,6 +313,7 @@ struct Scene {
     std::vector<Instance> instances() const;
     std::vector<PlacedCamera> placedCameras() const;
     std::vector<PlacedLight> placedLights() const;
+    std::vector<PlacedMeter> placedMeters() const;
     /** World bounds of all instances' finite vertices (those that indices use; every index must be in range),
      * and number of triangles with every instance counted. */
     struct Bounds {

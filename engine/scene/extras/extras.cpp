@@ -192,6 +192,32 @@ void readCamera(const std::string& file, const json& object, int index, Camera& 
     camera.exposure = to;
 }
 
+void readNode(const std::string& file, const json& object, std::size_t index, Node& node, Scene& scene) {
+    const json* const own = extrasOf(object);
+    if (own == nullptr || !own->contains("meter")) return;
+    const json& from = (*own)["meter"];
+    using Quantity = Meter::Quantity;
+    constexpr std::pair<const char*, Quantity> quantities[] = {{"irradiance", Quantity::Irradiance},
+                                                               {"flux", Quantity::Flux},
+                                                               {"radiance", Quantity::Radiance},
+                                                               {"intensity", Quantity::Intensity}};
+    Meter meter;
+    meter.name = node.name;
+    for (const auto& [name, quantity] : quantities) {
+        if (from["quantity"] == name) meter.quantity = quantity;
+    }
+    const bool isPoint = meter.quantity == Quantity::Irradiance || meter.quantity == Quantity::Radiance;
+    for (const char* side : {"width", "height"}) {
+        if (isPoint && from.contains(side))
+            throw InputError(file, fmt::format("/nodes/{}/extras/heliograph/meter/{}", index, side),
+                             "belongs to a meter of flux or intensity", "leave it out");
+    }
+    meter.width = from.value("width", meter.width);
+    meter.height = from.value("height", meter.height);
+    node.meter = int(scene.meters.size());
+    scene.meters.push_back(std::move(meter));
+}
+
 void readScene(const std::string& file, const std::string& pointer, const json& object, Scene& scene) {
     const json* const own = extrasOf(object);
     if (own == nullptr) return;

@@ -15,11 +15,14 @@ namespace helio::extras {
  * pointer, the fault, and what the schema asks for. Objects are those of the lists that glTF 2.0 names. */
 void check(const std::string& file, const nlohmann::json& document);
 
-/** Reads what check() has accepted. `object` is a material, camera or scene of the document, `pointer` leads to it.
- * An environment's image is appended to Scene::images. */
+/** Reads what check() has accepted. `object` is a material, camera, node or scene of the document, `pointer`
+ * leads to it. An environment's image is appended to Scene::images. */
 void readMaterial(const nlohmann::json& object, Material& material);
 /** `index`: of the camera in the document. */
 void readCamera(const std::string& file, const nlohmann::json& object, int index, Camera& camera);
+/** A node's meter is appended to Scene::meters. `index`: of the node in the document. */
+void readNode(const std::string& file, const nlohmann::json& object, std::size_t index, Node& node,
+              Scene& scene);
 void readScene(const std::string& file, const std::string& pointer, const nlohmann::json& object,
                Scene& scene);
 

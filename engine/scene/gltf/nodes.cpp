@@ -153,6 +153,7 @@ Node nodeOf(const Asset& asset, const json& from, std::size_t index, MemoryBudge
         node.skin = skin;
     }
     node.camera = integerOr(from, "camera", -1);
+    extras::readNode(asset.file(), from, index, node, scene);
     for (const auto& [name, value] : extensionsOf(from).items()) {
         if (name == "KHR_lights_punctual") {
             node.light = integerOr(value, "light", -1);

@@ -2,7 +2,7 @@
 /** @file From radiometric to photometric quantities: what the eye makes of watts. */
 #include <span>
 
-namespace helio::verify {
+namespace helio {
 
 /** Luminous efficacy of monochromatic radiation at 540 THz (555 nm), lm/W: by the definition of the candela.
  */
@@ -16,4 +16,4 @@ double luminousEfficiency(double nanometres);
  * W/(sr m^2 nm). `values` belong to `wavelengths` (nm, ascending) and are linear between them; 0 outside. */
 double photometric(std::span<const double> wavelengths, std::span<const double> values);
 
-}  // namespace helio::verify
+}  // namespace helio

@@ -1,0 +1,106 @@
+// Russian roulette: the same mean at every chance, with the variance and the cost that theory gives.
+#include "tests/accuracy/path_scenes.hpp"
+#include "tests/support/device.hpp"
+
+#include <heliograph/error.hpp>
+#include <heliograph/renderer.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace helio::test {
+namespace {
+
+Renderer& renderer() {
+    static Renderer one(deviceOptions());
+    return one;
+}
+
+constexpr float kAlbedo = 0.25f;
+
+/** A closed room that emits 1. */
+Scene furnace() {
+    SceneBuilder b;
+    const int wall = b.material(glm::vec3(kAlbedo), glm::vec3(1.0f));
+    b.room({-1, -1, -1}, {1, 1.5f, 2}, {wall, wall, wall, wall, wall, wall});
+    b.camera({0.1f, 0.2f, 0.3f}, {0.4f, 0.1f, -1}, 1.2f);
+    return b.scene;
+}
+
+struct Measured {
+    double mean = 0, error = 0;
+    double variance = 0;  ///< of one path
+    double bounces = 0;   ///< rays of a path after the camera's
+};
+Measured measure(const std::function<void(RenderOptions&)>& set, std::uint32_t samples = 4096) {
+    RenderOptions o;
+    o.size = {16, 16};
+    o.samples = samples;
+    o.sampler = SamplerKind::Independent;
+    o.nextEventEstimation = false;
+    set(o);
+    const RenderResult result = renderer().render(furnace(), o);
+    Measured m;
+    const auto c = std::size_t(result.image.channel("variance.R"));
+    for (std::uint32_t y = 0; y < 16; ++y)
+        for (std::uint32_t x = 0; x < 16; ++x) {
+            m.mean += double(result.image.at(x, y, 0)) / 256;
+            m.variance += double(result.image.at(x, y, c)) / 256 * o.samples;
+        }
+    m.error = std::sqrt(m.variance / (256.0 * o.samples));
+    m.bounces = double(result.rays.bounce) / double(result.rays.camera);
+    return m;
+}
+
+/** With a fixed chance P, light of a path in a furnace of albedo a is X = 1 + a Y, Y the sum of (a / P)^k
+ * over k from 0 to N, and N at least k with the chance P^k: E X = 1 / (1 - a), E Y^2 the sum of (a / P)^(j +
+ * k) P^max(j, k). The first scattering is spared, so that 1 + P + P^2 + ... rays follow the camera's. */
+TEST(Roulette, FixedChancesHaveTheMeanTheVarianceAndTheCostOfTheory) {
+    const double a = double(kAlbedo);
+    for (const double chance : {0.2, 0.5, 0.9}) {
+        double squares = 0;
+        for (int j = 0; j < 300; ++j)
+            for (int k = 0; k < 300; ++k)
+                squares += std::pow(a / chance, j + k) * std::pow(chance, std::max(j, k));
+        const double variance = a * a * (squares - 1 / ((1 - a) * (1 - a)));
+        const Measured m = measure([&](RenderOptions& o) { o.survival = chance; });
+        const double z = (m.mean - 1 / (1 - a)) / m.error;
+        fmt::print(
+            "chance {}: {:.6f} +- {:.6f}, truth {:.6f}, z {:+.2f}; variance {:.5f}, theory {:.5f}; {:.4f} "
+            "bounces, theory {:.4f}\n",
+            chance, m.mean, m.error, 1 / (1 - a), z, m.variance, variance, m.bounces, 1 / (1 - chance));
+        EXPECT_LT(std::abs(z), 4.0);
+        EXPECT_LT(m.error, 0.001);
+        EXPECT_NEAR(m.variance / variance, 1.0, 0.03);
+        EXPECT_NEAR(m.bounces * (1 - chance), 1.0, 0.01);
+    }
+}
+
+/** By throughput: the constant changes the noise and the rays, not the mean; one so large that nothing ends
+ * within the depth leaves no noise at all. */
+TEST(Roulette, ConstantsChangeNoMean) {
+    const double truth = 1 / (1 - double(kAlbedo));
+    double rays = 0;
+    for (const double constant : {0.5, 1.0, 3.0, 30.0}) {
+        const Measured m = measure([&](RenderOptions& o) { o.roulette = constant; }, 1024);
+        const double z = (m.mean - truth) / m.error;
+        fmt::print("constant {}: {:.6f} +- {:.6f}, z {:+.2f}, {:.4f} bounces\n", constant, m.mean, m.error, z,
+                   m.bounces);
+        EXPECT_LT(std::abs(z), 4.0);
+        EXPECT_GT(m.bounces, rays);
+        rays = m.bounces;
+    }
+    const Measured all = measure([](RenderOptions& o) { o.roulette = 1e9, o.maxDepth = 8; }, 16);
+    EXPECT_NEAR(all.mean, truth * (1 - std::pow(double(kAlbedo), 9)), 1e-6);
+    EXPECT_LT(all.variance, 1e-12);
+    EXPECT_EQ(all.bounces, 8.0);
+    EXPECT_THROW(measure([](RenderOptions& o) { o.survival = 1.5; }), InputError);
+    EXPECT_THROW(measure([](RenderOptions& o) { o.roulette = 0; }), InputError);
+}
+
+}  // namespace
+}  // namespace helio::test
