@@ -235,6 +235,8 @@ check 'a warm process compiles nothing' cmp -s cold.txt <(caches)
 bench() { "$program" bench irradiance/independent --quick --json bench.json "$@"; }
 expect 'bench refuses what it does not measure' 1 "teapot: is nothing that is measured; name a group" "$program" bench teapot
 expect 'bench refuses a folder that is not there' 1 'folder does not exist' "$program" bench furnace --json nowhere/x.json
+expect 'bench says before any work what a page needs' 1 'install the package python3-matplotlib' env PATH=/nowhere "$program" bench furnace --json page.json --html page.html
+check 'and has done none' test ! -e page.json
 echo '{"what": "a shopping list"}' >list.json
 expect 'bench keeps a file that is not its own' 1 'is no record of a benchmark' "$program" bench furnace --json list.json
 check 'and leaves it as it is' grep -q shopping list.json

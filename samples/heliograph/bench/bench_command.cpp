@@ -3,6 +3,7 @@
 #include "../interrupts.hpp"
 #include "../output_files.hpp"
 #include "bench_cases.hpp"
+#include "bench_page.hpp"
 #include "bench_record.hpp"
 #include "bench_runner.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 struct BenchArguments {
     std::vector<std::string> names;
     std::string json = "heliograph-bench.json";
+    std::string html;
     std::string device = "auto";
     bool quick = false, quiet = false;
 };
@@ -56,6 +58,7 @@ int bench(const BenchArguments& arguments) {
     const BenchSettings settings = benchSettings(arguments.quick);
     const std::vector<BenchCase> cases = chosenCases(benchCases(arguments.quick), arguments.names);
     checkTextOutput(arguments.json);
+    if (!arguments.html.empty()) checkPage(arguments.html);
     handleInterrupts();
     Renderer renderer({.device = arguments.device});
     BenchRecord record(arguments.json, settings, renderer.device().info().name);
@@ -70,10 +73,12 @@ int bench(const BenchArguments& arguments) {
         say("interrupted; the same command goes on from {}", arguments.json);
         return Interrupted;
     }
+    if (!arguments.html.empty()) writePage(arguments.json, arguments.html);
     if (!arguments.quiet) {
         printTable(record, cases);
         printLine("wrote {}", record.file().string());
         printLine("wrote {}", record.csvFile().string());
+        if (!arguments.html.empty()) printLine("wrote {}", arguments.html);
     }
     const std::vector<std::string> failures = unexpected(record, cases);
     if (failures.empty()) return Done;
@@ -95,6 +100,8 @@ void addBenchCommand(CLI::App& app, Command& run) {
             "File of the results, written after every render; what it holds already is not measured again. "
             "A .csv and a folder .pictures come beside it")
         ->capture_default_str();
+    command->add_option("--html", arguments->html,
+                        "One page of it with plots and pictures; needs python3 with matplotlib");
     command
         ->add_option("--device", arguments->device, "auto, an index or part of a name from heliograph info")
         ->capture_default_str();

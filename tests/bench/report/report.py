@@ -147,7 +147,7 @@ def pictures(record, folder, truth, series_list):
                 continue
             error = f"{point['samples']} samples, relMSE {point['relmse']:.2g}"
             shown.append((series["method"], error, folder / point["picture"]))
-            shown.append((series["method"], "its error: white is 100 %", folder / point["difference"]))
+            shown.append((series["method"], "its error: white is 100\u00a0%", folder / point["difference"]))
     parts = []
     for name, detail, file in shown:
         if file.exists():
