@@ -177,6 +177,15 @@ TEST(ShadeLights, PointSpotAndDirectional) {
         }
 }
 
+TEST(ShadeLights, BehindASurfaceTheyBringNothing) {
+    Scene scene;
+    addPrimitive(scene, floorQuad(10), lambert(glm::vec3(0.5f)));
+    glm::dmat4 below(1.0);
+    below[3] = {0.5, -2, -0.25, 1};
+    addLight(scene, PunctualLight{}, below);
+    for (const glm::vec4& c : shade(scene, downView({0, 4, 0}, 21, 21, 4)).color) EXPECT_EQ(c.r, 0.0f);
+}
+
 TEST(ShadeLights, EnvironmentEmissionAndMisses) {
     Scene scene;
     scene.environment = Environment{glm::vec3(0.5f, 1, 2), -1};

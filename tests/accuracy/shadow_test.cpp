@@ -179,6 +179,7 @@ TEST(Shadows, FilteredEdgesAreAsWideAsTheBox) {
         const ShadedImage image = shadeWithShadows(scene, fromAbove(), {kind, 512, 3.0f});
         const double texel = 2 * 4.31 / 504 / (c.position.y / glm::length(c.position));
         std::size_t partial = 0;
+        double lost = 0;
         for (std::uint32_t y = 0; y < kSize; ++y)
             for (std::uint32_t x = 0; x < kSize; ++x) {
                 const std::size_t i = image.at(x, y);
@@ -187,6 +188,7 @@ TEST(Shadows, FilteredEdgesAreAsWideAsTheBox) {
                 EXPECT_GE(share, 0.0);
                 EXPECT_LE(share, 1.0);
                 partial += share > 0.02 && share < 0.98;
+                lost += 1 - share;
                 if (distance > 6 * texel) {
                     EXPECT_EQ(share, 1.0);
                 }
@@ -195,6 +197,11 @@ TEST(Shadows, FilteredEdgesAreAsWideAsTheBox) {
                 }
             }
         EXPECT_GT(partial, 100u);
+        // A box moves light about and loses none: the shadow of the unit square has its area. So has
+        // Chebyshev's bound, which for two depths is the share of the box that is lit.
+        const double area = lost / (kPixelsPerUnit * kPixelsPerUnit);
+        std::printf("             area of the shadow %.4f\n", area);
+        EXPECT_NEAR(area, 1.0, 0.01);
     }
 }
 
