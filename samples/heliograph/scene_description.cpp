@@ -84,6 +84,16 @@ Json lights(const Scene& scene) {
     return list;
 }
 
+Json meters(const Scene& scene) {
+    constexpr const char* quantities[] = {"irradiance", "flux", "radiance", "intensity"};
+    Json list = Json::array();
+    for (const PlacedMeter& placed : scene.placedMeters()) {
+        const Meter& meter = scene.meters[std::size_t(placed.meter)];
+        list.push_back({{"name", meter.name}, {"quantity", quantities[int(meter.quantity)]}});
+    }
+    return list;
+}
+
 Json cameras(const Scene& scene) {
     Json list = Json::array();
     for (const PlacedCamera& placed : scene.placedCameras()) {
@@ -171,6 +181,7 @@ Json describeScene(const Scene& scene) {
                    {"images", images(scene)},
                    {"cameras", cameras(scene)},
                    {"lights", lights(scene)},
+                   {"meters", meters(scene)},
                    {"environment", environment(scene)},
                    {"animations", animations(scene)},
                    {"variants", scene.variants},

@@ -122,6 +122,20 @@ TEST(Bounces, LayersAreWhatDepthsDifferBy) {
     EXPECT_EQ(whole.image.channel("bounce.0.R"), -1);
 }
 
+/** Layers of an image so wide that they lie in several rows. */
+TEST(Bounces, LayersOfAWideImage) {
+    RenderOptions o = options(8, 2, 4);
+    o.size = {4096, 2};
+    o.maxDepth = 8;
+    o.auxiliary = false;
+    const RenderResult result = renderer().render(furnace(0.8f), o);
+    EXPECT_LT(worstSum(result.image, 4), 1e-5);
+    for (int k = 0; k <= 4; ++k) {
+        const Mean e = mean(result.image, layer(k, 4));
+        EXPECT_NEAR(e.value, std::pow(0.8, k), 4 * e.error + 1e-5) << k;
+    }
+}
+
 /** A film that stops within a batch has the pixels that were through with it: so have the layers. */
 TEST(Bounces, AStopWithinABatchLeavesWhatTheFilmHas) {
     Scene scene = furnace(0.8f);

@@ -25,9 +25,10 @@ struct Built {
     PathCounters counters;
 };
 
-Built build(Scene scene, bool counts = false) {
+Built build(Scene scene, bool counts = false, int bounces = -1) {
     PathTraceOptions options;
     options.size = {8, 8};
+    options.bounces = bounces;
     const PlacedCamera placed = chooseCamera(scene, {}, 1.0);
     DeviceScene uploaded(device(), scene, PathTracer::packOptions(scene, options));
     Film film(device(), 8, 8);
@@ -72,6 +73,15 @@ TEST(FeaturesOff, EachCostsNothingWhereTheSceneLacksIt) {
             EXPECT_FALSE(plain.code.bindings.contains(name)) << name;
         }
     }
+}
+
+TEST(FeaturesOff, LightByBouncesCostsNothingUnlessAskedFor) {
+    const SpecializedKernel plain = build(plainRoom().scene).code,
+                            split = build(plainRoom().scene, false, 2).code;
+    EXPECT_GT(split.instructions, plain.instructions);
+    EXPECT_TRUE(split.bindings.contains("uBounces"));
+    for (const char* name : {"uBounces", "uPatchSlots", "uPatchRadiance"})
+        EXPECT_FALSE(plain.bindings.contains(name)) << name;
 }
 
 TEST(FeaturesOff, LayersOfAMaterialCostNothingWhereItHasNone) {

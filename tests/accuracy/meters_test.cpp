@@ -150,6 +150,22 @@ TEST(Meters, IntensityAndRadianceOfALambertianSquare) {
     }
 }
 
+/** Radiance over the square of the refractive index is what refraction keeps: within lossless glass under a
+ * sky of 1, from where every ray comes out in the end, it is n^2. */
+TEST(Meters, BasicRadianceInGlass) {
+    SceneBuilder b;
+    Material glass;
+    glass.scattering = Scattering{.model = Scattering::Model::Dielectric};
+    b.scene.materials.push_back(glass);
+    b.sphere({0, 0, 0}, 1, 2, false, int(b.scene.materials.size()) - 1);
+    b.scene.environment = Environment{glm::vec3(1.0f), -1};
+    addMeter(b.scene, Quantity::Radiance, {0.05, 0.02, 0.03}, {0.3, 0.2, 1});
+    addMeter(b.scene, Quantity::Irradiance, {0.05, 0.02, 0.03}, {0.3, 0.2, 1});
+    const auto readings = read(b.scene, 64);
+    expectReading(readings[0], 2.25, 0.002);
+    expectReading(readings[1], 2.25 * kPi, 0.002);
+}
+
 /** In a furnace all light is alike: a meter on a wall reads pi times the radiance, and depths count as a
  * camera's do. */
 TEST(Meters, OnAWallOfAFurnace) {

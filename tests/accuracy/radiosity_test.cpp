@@ -161,6 +161,24 @@ TEST(Radiosity, TheSkyBesideAWall) {
     EXPECT_NEAR(value, truth, 2e-4 * truth);
 }
 
+/** A patch that faces up over a square light that faces it from below: its back has the light, its front
+ * none. */
+TEST(Radiosity, BothSidesOfAPatch) {
+    for (const float side : {-1.0f, 1.0f}) {
+        SceneBuilder b;
+        constexpr float half = 1e-3f;
+        b.quad({-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0},
+               b.material(glm::vec3(0.8f)));
+        b.quad({-0.5f, -0.5f, -1}, {0.5f, -0.5f, -1}, {0.5f, 0.5f, -1}, {-0.5f, 0.5f, -1},
+               b.material(glm::vec3(0.0f), glm::vec3(1.0f)));
+        b.camera({0.4f, 0.1f, 0.5f * side}, {0, 0, 0}, 2e-5f, {0, 0, 1});
+        const double truth = side < 0 ? 0.8 * 0.752274688454 / 3.14159265358979 : 0.0;
+        const double value = mean(solve(b.scene, 4, 64));
+        fmt::print("side {}: {:.7f}, truth {:.7f}\n", side, value, truth);
+        EXPECT_NEAR(value, truth, 2e-6);
+    }
+}
+
 TEST(Radiosity, WhatItCannotSolveIsRefused) {
     const auto refused = [](
                              const Scene& scene, const std::string& what,
