@@ -25,12 +25,14 @@ LIMIT_SECONDS = 900  # of one test; a fault that makes it hang is noticed by tha
 
 
 class Fault:
-    def __init__(self, file, tests, text, replacement):
-        self.file, self.tests, self.text, self.replacement = file, tests, text, replacement
-        self.name = f"{file}: {' '.join(text.split())}{SEPARATOR}{' '.join(replacement.split())}"
+    def __init__(self, section, text, replacement):
+        self.file, self.tests, self.is_built = section
+        self.text, self.replacement = text, replacement
+        self.name = f"{self.file}: {' '.join(text.split())}{SEPARATOR}{' '.join(replacement.split())}"
 
     def is_shader(self):
-        return self.file.endswith((".glsl", ".comp"))
+        """Whether it is planted without a build."""
+        return not self.is_built and self.file.endswith((".glsl", ".comp"))
 
     def planted(self):
         source = (ROOT / self.file).read_text()
@@ -51,13 +53,14 @@ def read_catalogue(path):
         text, separator, replacement = joined.partition(SEPARATOR)
         if not separator or section is None:
             raise ValueError(f"{path}: no fault: {joined!r}")
-        faults.append(Fault(section[0], section[1], text.strip(), replacement.rstrip("\n").strip()))
+        faults.append(Fault(section, text.strip(), replacement.strip()))
 
     for line in path.read_text().splitlines():
         head = re.fullmatch(r"\[(\S+) \| (.+)\]", line)
         if head:
             finish()
-            section = head[1], [test.split(" ", 1) for test in head[2].split(" ; ")]
+            tests = head[2].removeprefix("build: ")
+            section = head[1], [test.split(" ", 1) for test in tests.split(" ; ")], tests != head[2]
         elif line.startswith("#") and section is None or not line.strip():
             finish()
         else:
