@@ -29,6 +29,7 @@ struct PlaceHash {
 
 struct Sum {
     glm::dvec3 weighted{0.0};
+    double weight = 0;
     glm::dvec3 any{0.0};  ///< of one of the triangles
 };
 
@@ -49,15 +50,15 @@ void addTriangle(const std::array<glm::vec3, 3>& corners, NormalWeight weight, S
         if (weight == NormalWeight::Angle) share = std::atan2(size, glm::dot(left, right));
         Sum& sum = sums[Place(corners[k])];
         sum.weighted += share * unit;
+        sum.weight += share;
         sum.any = unit;
     }
 }
 
-glm::vec3 normalOf(const Sum& sum, NormalWeight weight) {
+glm::vec3 normalOf(const Sum& sum) {
     const double length = glm::length(sum.weighted);
-    // What is left of normals that cancel is rounding; areas have a scale of their own.
-    const double least = weight == NormalWeight::Area ? 0.0 : 1e-12;
-    if (length > least) return glm::vec3(sum.weighted / length);
+    // What is left of normals that cancel is rounding.
+    if (length > 1e-12 * sum.weight) return glm::vec3(sum.weighted / length);
     return sum.any == glm::dvec3(0.0) ? glm::vec3(0, 0, 1) : glm::vec3(sum.any);
 }
 
@@ -85,7 +86,7 @@ void smoothNormals(Scene& scene, NormalWeight weight) {
             primitive.normals.reserve(primitive.positions.size());
             for (const glm::vec3& position : primitive.positions) {
                 const auto found = sums.find(Place(position));
-                primitive.normals.push_back(normalOf(found == sums.end() ? Sum() : found->second, weight));
+                primitive.normals.push_back(normalOf(found == sums.end() ? Sum() : found->second));
             }
             for (MorphTarget& target : primitive.targets) target.normals.clear();
         }

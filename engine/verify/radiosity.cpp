@@ -104,7 +104,8 @@ std::vector<double> Radiosity::solve() const {
     return x;
 }
 
-std::vector<double> Radiosity::iterate(double tolerance, int* iterations, int most) const {
+std::vector<double> Radiosity::iterate(double tolerance, int* iterations, int most,
+                                       const std::function<bool()>& goOn) const {
     std::vector<double> radiance = emission_;
     for (int turn = 1;; ++turn) {
         std::vector<double> next = apply(radiance);
@@ -115,7 +116,7 @@ std::vector<double> Radiosity::iterate(double tolerance, int* iterations, int mo
         }
         radiance = std::move(next);
         if (iterations != nullptr) *iterations = turn;
-        if (change <= tolerance || turn >= most) return radiance;
+        if (change <= tolerance || turn >= most || !goOn()) return radiance;
     }
 }
 

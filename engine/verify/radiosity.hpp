@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,9 +39,11 @@ public:
 
     /** Radiance of each patch, by Gaussian elimination of I - K. */
     std::vector<double> solve() const;
-    /** The same by L <- E + K L until no radiance changes by more than `tolerance`, or `most` times;
-     * `iterations` tells how often. */
-    std::vector<double> iterate(double tolerance, int* iterations = nullptr, int most = 100000) const;
+    /** The same by L <- E + K L until no radiance changes by more than `tolerance`, or `most` times, or
+     * `goOn`, asked each time, says no; `iterations` tells how often. */
+    std::vector<double> iterate(
+        double tolerance, int* iterations = nullptr, int most = 100000,
+        const std::function<bool()>& goOn = [] { return true; }) const;
     /** K^n E: radiance after exactly n reflections. */
     std::vector<double> bounce(int n) const;
 

@@ -6,7 +6,7 @@
 namespace helio {
 namespace {
 
-/** What every device's images may have at least, texels each way. */
+/** What the engine requires of images, texels each way. */
 constexpr std::uint32_t kLargestImage = 16384;
 constexpr std::uint32_t kMostBounces = 64;
 

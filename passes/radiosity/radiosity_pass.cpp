@@ -122,8 +122,8 @@ double RadiosityPass::skyShare(std::size_t side, std::size_t point) const {
     return std::max(0.0, 1 - covered);
 }
 
-void RadiosityPass::solveChannel(int channel, const std::vector<std::size_t>& lit,
-                                 RenderResult::Radiosity& report) {
+bool RadiosityPass::solveChannel(int channel, const std::vector<std::size_t>& lit,
+                                 const std::function<bool(double)>& goOn, RenderResult::Radiosity& report) {
     const std::size_t n = list_.patches.size(), unknowns = lit.size();
     std::vector<double> matrix(unknowns * unknowns), emission(unknowns), reflectance(unknowns);
     const auto factor = [&](std::size_t to, std::size_t from, std::size_t point) {
@@ -148,7 +148,12 @@ void RadiosityPass::solveChannel(int channel, const std::vector<std::size_t>& li
     }
     const verify::Radiosity system(std::move(matrix), std::move(emission), std::move(reflectance));
     int iterations = 0;
-    const std::vector<double> solution = system.iterate(1e-9 * largest, &iterations, kMostIterations);
+    bool isCancelled = false;
+    const std::vector<double> solution = system.iterate(1e-9 * largest, &iterations, kMostIterations, [&] {
+        isCancelled = isCancelled || !goOn(1);
+        return !isCancelled;
+    });
+    if (isCancelled) return false;
     report.iterations = std::max(report.iterations, std::uint32_t(iterations));
     report.converged = report.converged && iterations < kMostIterations;
     if (unknowns <= kMostDense) {
@@ -171,6 +176,7 @@ void RadiosityPass::solveChannel(int channel, const std::vector<std::size_t>& li
             pointRadiance_[lit[row] * 3 + point][channel] =
                 emitted(lit[row]) + list_.patches[lit[row] / 2].reflectance[channel] * sum;
         }
+    return true;
 }
 
 void RadiosityPass::uploadRadiance() {
@@ -193,8 +199,7 @@ bool RadiosityPass::solve(const std::function<bool(double)>& goOn, RenderResult:
     const std::vector<std::size_t> lit = litSides();
     report.unknowns = std::uint32_t(lit.size());
     for (int channel = 0; channel < 3 && !lit.empty(); ++channel) {
-        if (!goOn(1)) return false;
-        solveChannel(channel, lit, report);
+        if (!goOn(1) || !solveChannel(channel, lit, goOn, report)) return false;
     }
     uploadRadiance();
     factors_ = {};

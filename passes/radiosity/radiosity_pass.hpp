@@ -38,7 +38,8 @@ public:
 
 private:
     bool formFactors(const std::function<bool(double)>& goOn);
-    void solveChannel(int channel, const std::vector<std::size_t>& lit, RenderResult::Radiosity& report);
+    bool solveChannel(int channel, const std::vector<std::size_t>& lit,
+                      const std::function<bool(double)>& goOn, RenderResult::Radiosity& report);
     std::vector<std::size_t> litSides() const;
     void runRows(std::uint32_t first, std::uint32_t rows);
     void uploadRadiance();

@@ -89,6 +89,8 @@ void check(const RenderOptions& options) {
            fmt::format("{} patches", options.radiosityPatches), "give 1 to 2048");
     refuse(options.integrator == Integrator::Radiosity && (options.maxDepth >= 0 || options.bounces >= 0),
            "maxDepth, bounces", "radiosity has the light of all bounces at once", "leave them out");
+    refuse(options.integrator == Integrator::Radiosity && options.maxSeconds > 0, "maxSeconds",
+           "the light of patches takes its time to solve", "leave it out");
     refuse(options.bounces >= 0 && options.pipeline == Pipeline::Raster, "bounces",
            "the raster pipeline has direct light alone", "leave it out");
     refuse(options.bounces >= 0 && !options.checkpoint.empty(), "bounces",
@@ -114,6 +116,17 @@ void check(const std::optional<Environment>& environment, const Scene& scene) {
     const double length = glm::dot(environment->rotation, environment->rotation);
     refuse(!(length > 0.5 && length < 2), "environment", "its rotation is no unit quaternion",
            "give a rotation");
+}
+
+/** Before the scene is prepared: what is too large to cut, and what patches leave out. */
+void checkPatches(const Scene& scene, RenderResult& result) {
+    refuse(scene.triangleCount() > kMostPatches, "radiosity",
+           fmt::format("the scene has {} triangles", scene.triangleCount()),
+           "give at most 2048, or render by paths");
+    const bool isSmooth = std::ranges::any_of(scene.meshes, [](const Mesh& mesh) {
+        return std::ranges::any_of(mesh.primitives, [](const Primitive& p) { return !p.normals.empty(); });
+    });
+    if (isSmooth) result.skipped.emplace_back("geometry.normals", "patches are flat, whatever normals say");
 }
 
 /** The patches of a scene as it was prepared. */
@@ -182,6 +195,7 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
     warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;
+    if (options.integrator == Integrator::Radiosity) checkPatches(scene, job.result);
     const PackOptions pack = path ? PathTracer::packOptions(scene, pathTraceOptions(options, motion.shutter))
                                   : rasterPackOptions();
     PreparedScene& prepared = scenes.prepare(scene, environment, motion.later, pack);

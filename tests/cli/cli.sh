@@ -240,13 +240,16 @@ check 'and has done none' test ! -e page.json
 echo '{"what": "a shopping list"}' >list.json
 expect 'bench keeps a file that is not its own' 1 'is no record of a benchmark' "$program" bench furnace --json list.json
 check 'and leaves it as it is' grep -q shopping list.json
+expect 'bench keeps its files apart' 1 'is the name of what comes beside the record' "$program" bench furnace --json x.csv
+echo '{"what": "heliograph bench", "truths": {}, "settings": {}, "series": [{"group": "samplers"}]}' >half.json
+expect 'bench refuses half a record' 1 'is no record of a benchmark' "$program" bench furnace --json half.json
 bench --quiet &
 child=$!
-for ((tick = 0; tick < 1000; ++tick)); do [ -e bench.json ] && break; sleep 0.01; done
-sleep 0.05
+for ((tick = 0; tick < 6000; ++tick)); do grep -qs cpu_seconds bench.json && break; sleep 0.01; done
 kill -9 $child 2>/dev/null
 wait $child 2>/dev/null
 cp bench.json first.json
+check 'a killed bench has kept what it measured' grep -q cpu_seconds first.json
 expect 'a killed bench goes on' 0 'irradiance +samplers +independent' bench
 check 'all its points are there once' test "$(tail -n +2 bench.csv | cut -d, -f 1-5 | sort | uniq | wc -l) $(tail -n +2 bench.csv | wc -l)" = '14 14'
 check 'and what was measured before the kill was kept' cmp -s <(grep cpu_seconds first.json) <(grep cpu_seconds bench.json | head -n "$(grep -c cpu_seconds first.json)")

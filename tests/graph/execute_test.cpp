@@ -241,7 +241,6 @@ TEST(Execute, TimesAddUpToTheWhole) {
         EXPECT_GE(time.milliseconds, 0.0);
         sum += time.milliseconds;
     }
-    EXPECT_GT(times[1].milliseconds, times[0].milliseconds);
     EXPECT_GT(sum, 0.0);
     EXPECT_LE(sum, wall * 1.01) << "the device worked longer than we waited";
 }

@@ -184,5 +184,16 @@ TEST(Normals, WithoutAreaOrCancelling) {
     EXPECT_TRUE(scene.meshes[0].primitives[0].normals.empty());
 }
 
+TEST(Normals, WhatRoundingLeavesOfCancelledNormalsIsNone) {
+    Primitive p;
+    // A triangle, and its back in two halves: around the first corner their areas cancel, but for rounding.
+    p.positions = {{1, 2, 3}, {5, -3, 7}, {-7, 9, 1}, {-1, 3, 4}};
+    p.indices = {0, 1, 2, 0, 2, 3, 0, 3, 1};
+    Scene scene = sceneOf(p);
+    smoothNormals(scene, NormalWeight::Area);
+    const glm::dvec3 plane = glm::normalize(glm::cross(glm::dvec3(4, -5, 4), glm::dvec3(-8, 7, -2)));
+    EXPECT_NEAR(std::abs(glm::dot(glm::dvec3(scene.meshes[0].primitives[0].normals[0]), plane)), 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace helio

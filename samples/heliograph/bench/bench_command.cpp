@@ -10,8 +10,11 @@
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 namespace helio::cli {
@@ -39,12 +42,17 @@ void printTable(const BenchRecord& record, const std::vector<BenchCase>& cases) 
     }
 }
 
-/** The series whose error does not fall as theory says, a phrase each. */
+/** The series with pictures that are not finite, or whose error does not fall as theory says, a phrase each.
+ */
 std::vector<std::string> unexpected(const BenchRecord& record, const std::vector<BenchCase>& cases) {
     std::vector<std::string> phrases;
     for (const BenchCase& each : cases) {
+        const std::vector<SeriesPoint> series = record.series(each);
+        if (std::ranges::any_of(series,
+                                [](const SeriesPoint& point) { return !std::isfinite(point.relmse); }))
+            phrases.push_back(fmt::format("a picture of {}/{} is not finite", each.scene, each.method));
         if (!each.order) continue;
-        const SeriesFit fit = fitSeries(record.series(each));
+        const SeriesFit fit = fitSeries(series);
         if (fit.order < each.order->low || fit.order > each.order->high) {
             phrases.push_back(fmt::format("the error of {}/{} falls as samples^{:.3f}, outside {} to {}",
                                           each.scene, each.method, fit.order, each.order->low,

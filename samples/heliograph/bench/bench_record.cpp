@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
+#include <limits>
 #include <map>
 
 namespace helio::cli {
@@ -29,12 +31,30 @@ Json begin(const BenchSettings& settings, const std::string& device) {
             {"series", Json::array()}};
 }
 
+/** Whether `json` is an object with a member of each name, all of them of a kind. */
+bool has(const Json& json, bool (Json::*kind)() const noexcept, std::initializer_list<const char*> names) {
+    return json.is_object() && std::ranges::all_of(names, [&](const char* name) {
+               const auto found = json.find(name);
+               return found != json.end() && ((*found).*kind)();
+           });
+}
+
+bool isPoint(const Json& json) {
+    return has(json, &Json::is_number_unsigned, {"samples", "seed"}) &&
+           has(json, &Json::is_number, {"cpu_seconds"}) && json.contains("relmse");
+}
+
+bool isSeries(const Json& json) {
+    return has(json, &Json::is_string, {"group", "scene", "method"}) &&
+           has(json, &Json::is_array, {"points"}) && std::ranges::all_of(json["points"], isPoint);
+}
+
 Json read(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     Json json = Json::parse(stream, nullptr, false);
-    const bool isRecord = json.is_object() && json.value("what", Json()) == "heliograph bench" &&
-                          json.contains("truths") && json["truths"].is_object() && json.contains("series") &&
-                          json["series"].is_array();
+    const bool isRecord =
+        has(json, &Json::is_object, {"truths", "settings"}) && has(json, &Json::is_array, {"series"}) &&
+        json.value("what", Json()) == "heliograph bench" && std::ranges::all_of(json["series"], isSeries);
     if (!isRecord)
         throw InputError(file.string(), "", "is there and is no record of a benchmark",
                          "name another file with --json");
@@ -49,6 +69,9 @@ constexpr const char* kColumns[] = {"samples",       "seed", "seconds", "cpu_sec
 
 BenchRecord::BenchRecord(std::filesystem::path file, const BenchSettings& settings, const std::string& device)
     : file_(std::move(file)), json_(begin(settings, device)) {
+    if (file_ == csvFile() || file_ == pictureFolder())
+        throw InputError(file_.string(), "", "is the name of what comes beside the record",
+                         "name a file that ends in .json with --json");
     if (!std::filesystem::exists(file_)) return;
     Json found = read(file_);
     for (const char* key : {"version", "device", "settings"}) {
@@ -102,8 +125,10 @@ std::vector<SeriesPoint> BenchRecord::series(const BenchCase& measured) const {
     std::map<std::uint32_t, std::vector<SeriesPoint>> bySamples;
     for (const Json& point : (*found)["points"]) {
         const auto samples = point["samples"].get<std::uint32_t>();
-        bySamples[samples].push_back(
-            {samples, point["relmse"].get<double>(), point["cpu_seconds"].get<double>()});
+        // JSON has no NaN: what is not a number was not one.
+        const double relmse = point["relmse"].is_number() ? point["relmse"].get<double>()
+                                                          : std::numeric_limits<double>::quiet_NaN();
+        bySamples[samples].push_back({samples, relmse, point["cpu_seconds"].get<double>()});
     }
     std::vector<SeriesPoint> series;
     for (const auto& [samples, renders] : bySamples) {
@@ -127,14 +152,19 @@ void BenchRecord::setTruth(const std::string& key, const Json& description) {
 }
 
 std::filesystem::path BenchRecord::picture(const std::string& name) const {
-    std::filesystem::path folder = file_;
-    folder.replace_extension(".pictures");
+    const std::filesystem::path folder = pictureFolder();
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
         throw InputError(folder.string(), "", "the folder cannot be made: " + error.message(),
                          "name another file with --json");
     return folder / name;
+}
+
+std::filesystem::path BenchRecord::pictureFolder() const {
+    std::filesystem::path folder = file_;
+    folder.replace_extension(".pictures");
+    return folder;
 }
 
 std::filesystem::path BenchRecord::csvFile() const {

@@ -17,14 +17,14 @@ public:
     using Json = nlohmann::ordered_json;
 
     /** Opens the file's record or begins one. Throws InputError where the file is no record, or one of
-     * another device, version or settings. */
+     * another device, version or settings, or bears the name of what comes beside it. */
     BenchRecord(std::filesystem::path file, const BenchSettings& settings, const std::string& device);
 
     /** Whether a point is there: one render. */
     bool has(const BenchCase& measured, std::uint32_t samples, std::uint32_t seed) const;
     /** Adds a point and writes the files. `point` holds `samples` and `seed`. */
     void add(const BenchCase& measured, const Json& point);
-    /** Means over the renders of each number of samples, ascending. */
+    /** Means over the renders of each number of samples, ascending; NaN where a picture was not finite. */
     std::vector<SeriesPoint> series(const BenchCase& measured) const;
 
     /** What is known of a truth; null where nothing is. */
@@ -44,6 +44,7 @@ private:
     const Json* find(const BenchCase& measured) const;
     void write() const;
     std::string csv() const;
+    std::filesystem::path pictureFolder() const;
 
     std::filesystem::path file_;
     Json json_;
