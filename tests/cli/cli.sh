@@ -16,7 +16,7 @@ expect() {
     "$@" >out.txt 2>err.txt
     local got=$?
     if [ "$got" -ne "$code" ]; then miss "$name: exit $got, not $code: $(head -c 300 err.txt)"; return; fi
-    if [ -n "$pattern" ] && ! cat out.txt err.txt | grep -qE -- "$pattern"; then
+    if [ -n "$pattern" ] && ! grep -qE -- "$pattern" out.txt err.txt; then
         miss "$name: nothing matches '$pattern': $(cat out.txt err.txt | head -c 300)"; return
     fi
     if [ "$code" -eq 1 ] || [ "$code" -eq 2 ]; then
