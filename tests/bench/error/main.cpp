@@ -57,7 +57,8 @@ int main(int argc, char** argv) try {
     std::vector<std::string> scenes = {"cornell", "plates", "room", "spheres"};
     CLI::App* command =
         app.add_subcommand("coverage", "How often the 95 % interval of the relMSE holds the true one");
-    command->add_option("scenes", scenes, "Samples, room or spheres")->capture_default_str();
+    command->add_option("scenes", scenes, "Samples, room, spheres, yard, metals or blinds")
+        ->capture_default_str();
     command->add_option("--seeds", options.seeds)->capture_default_str();
     command->add_option("--spp", options.samples)->capture_default_str();
     command->add_option("--size", options.size)->capture_default_str();
@@ -66,7 +67,8 @@ int main(int argc, char** argv) try {
     helio::test::TableOptions tableOptions;
     std::vector<std::string> tableScenes = {"cornell", "plates", "glass", "lights500", "room", "spheres"};
     CLI::App* tableCommand = app.add_subcommand("table", "relMSE plain, adaptive and denoised");
-    tableCommand->add_option("scenes", tableScenes, "Samples, room or spheres")->capture_default_str();
+    tableCommand->add_option("scenes", tableScenes, "Samples, room, spheres, yard, metals or blinds")
+        ->capture_default_str();
     tableCommand->add_option("--seeds", tableOptions.seeds)->capture_default_str();
     tableCommand->add_option("--reference", tableOptions.reference, "Samples of the truth")
         ->capture_default_str();
