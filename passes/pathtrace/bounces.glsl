@@ -26,11 +26,10 @@ void clearBounces(uvec2 pixel, uvec2 size) {
     }
 }
 
-/** Adds light that scattered `depth` times. What is not finite is left out, as the film leaves out its sample. */
+/** Adds light that scattered `depth` times. What the film would not take is left out here too, though not the other
+ * light of its sample. */
 void addBounce(uvec2 pixel, uvec2 size, uint depth, vec3 radiance) {
-    const float largest = max(max(abs(radiance.x), abs(radiance.y)), abs(radiance.z));
-    const float sum = abs(radiance.x) + abs(radiance.y) + abs(radiance.z);
-    if (largest > 0.0 && sum <= FILM_LARGEST) {  // false for NaN
+    if (radiance != vec3(0.0) && all(lessThanEqual(abs(radiance), vec3(FILM_LARGEST)))) {  // false for NaN
         const ivec2 texel = bounceTexel(pixel, size, min(depth, BOUNCE_LAYERS - 1u)) + ivec2(1, 0);
         imageStore(uBounces, texel, vec4(imageLoad(uBounces, texel).xyz + radiance, 0.0));
     }

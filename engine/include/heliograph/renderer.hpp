@@ -163,8 +163,8 @@ struct RenderOptions {
     bool errorMap = false;  ///< path pipeline: also RenderResult::errorMap
     /** Path pipeline: also the image's light by how often it scattered, the terms E, K E, K^2 E, ... of the
      * rendering equation's series: channels bounce.0.R .. bounce.N.B for 0 to N = bounces scatterings, and
-     * bounce.rest.R .. for more; they sum to R G B. Negative: none. Up to 64, fewer for large images. Not
-     * with a checkpoint. */
+     * bounce.rest.R .. for more; where nanCount is 0 they sum to R G B. Negative: none. Up to 64, fewer for
+     * large images. Not with a checkpoint. */
     std::int32_t bounces = -1;
     bool auxiliary = true;  ///< also albedo, normal, depth, variance, samples, ids
     /** Path pipeline: where the render's state is saved every `checkpointSeconds` of rendering (or more
