@@ -305,7 +305,7 @@ TEST(Fxaa, EdgesComeCloserToTheirExactCoverage) {
         after += smooth * smooth;
     }
     std::printf("             all: falls by %.0f %%\n", 100 * (1 - std::sqrt(after / before)));
-    EXPECT_LT(std::sqrt(after / before), 0.7);
+    EXPECT_LT(std::sqrt(after / before), 0.6);  // 0.69 where the wrong side of an edge is mixed
 }
 
 TEST(Fxaa, WithoutContrastNoBitChanges) {
