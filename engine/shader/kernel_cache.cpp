@@ -157,7 +157,9 @@ Kernel compileVariant(const Kernel& kernel, const KernelVariant& variant) {
 }
 
 Kernel overlaid(const Kernel& kernel) {
-    return shaderOverlay().empty() || !isEmbedded(kernel.spirv) ? kernel : compileVariant(kernel, {});
+    if (shaderOverlay().empty() || !isEmbedded(kernel.spirv) || !readShaderSource(kernel.source))
+        return kernel;
+    return compileVariant(kernel, {});
 }
 
 Kernel compileKernel(std::string_view name, std::string_view glsl, const KernelVariant& variant) {

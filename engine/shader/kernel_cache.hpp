@@ -21,7 +21,8 @@ std::shared_ptr<const CompiledGlsl> compileCached(const std::string& path, const
 bool isCompiledHere(std::span<const std::uint32_t> spirv);
 
 /** What a kernel that the build embedded is under the folder of shaderOverlay(): for debugging and for tests
- * that plant faults. The kernel as given where there is no such folder, or its words were not embedded. */
+ * that plant faults. The kernel as given where there is no such folder, or its words were not embedded, or
+ * its source is in no tree. */
 Kernel overlaid(const Kernel& kernel);
 
 struct KernelCacheStatistics {
