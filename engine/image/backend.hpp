@@ -7,7 +7,6 @@
  */
 #include <heliograph/image.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -23,21 +22,50 @@ namespace helio {
 struct DecodedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
+    std::uint32_t fileWidth = 0, fileHeight = 0;  ///< of the file: an image of one colour may be one texel
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> texels;
 };
 
-/** A few bytes can hold an image of any size. Those out of all proportion to their files share one allowance;
- * an image of one colour, which is kept as one texel, needs none of it. */
+/** A few bytes can hold an image of any size. What images take that is out of all proportion to their files
+ * comes from an allowance; an image of one colour, which is kept as one texel, needs none of it. */
 class ImageBudget {
 public:
-    /** Whether an image may take `bytes` in memory, from a file of `encoded` ones. Thread safe. */
+    /** What a scene may unfold to beyond its files, with the rest of what it unfolds to: 256 MiB, less what
+     * reading takes by itself. */
+    static constexpr std::uint64_t standard = std::uint64_t(240) << 20;
+
+    explicit ImageBudget(std::uint64_t allowance = standard) : left_(allowance) {}
+
+    /** To be said before each image. */
+    void begin() { held_ = 0; }
+    /** Whether the image, from a file of `encoded` bytes, may take so many, which stay. */
     bool take(std::uint64_t bytes, std::uint64_t encoded) {
-        constexpr std::uint64_t proportion = 200, allowance = std::uint64_t(112) << 20;
-        return bytes / proportion <= encoded || (used_ += bytes) <= allowance;
+        if (isInProportion(bytes, encoded)) return true;
+        if (!fits(bytes)) return false;
+        left_ -= bytes;
+        return true;
     }
+    /** The same of bytes that go again when the image is decoded. */
+    bool hold(std::uint64_t bytes, std::uint64_t encoded) {
+        if (isInProportion(bytes, encoded)) return true;
+        if (!fits(bytes)) return false;
+        held_ += bytes;
+        return true;
+    }
+    /** Whether take() or hold() said no. */
+    bool isExceeded() const { return isExceeded_; }
+    std::uint64_t left() const { return left_; }
 
 private:
-    std::atomic<std::uint64_t> used_{0};
+    static bool isInProportion(std::uint64_t bytes, std::uint64_t encoded) { return bytes / 200 <= encoded; }
+    bool fits(std::uint64_t bytes) {
+        const bool fits = bytes <= left_ && held_ <= left_ - bytes;
+        isExceeded_ = isExceeded_ || !fits;
+        return fits;
+    }
+
+    std::uint64_t left_, held_ = 0;
+    bool isExceeded_ = false;
 };
 
 /** What the module exports. Every function returns what went wrong, empty for success. */
@@ -67,8 +95,16 @@ const ImageBackend& imageBackend();
  * other files. Asked first, since libpng reports such faults on standard error by itself. */
 std::string pngFault(std::span<const std::byte> file);
 
-/** Decodes an image file held in memory, PNG, JPEG or WebP by its first bytes. Returns the fault, empty for
- * success. */
+/** Whether a file's first bytes are those of a PNG, JPEG or WebP. */
+bool isTextureFormat(std::span<const std::byte> file);
+
+/** Decodes such a file held in memory. Returns the fault, empty for success. */
 std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image);
+
+/** What is said of an image that the budget is not for. */
+inline std::string unfoldsTo(std::uint64_t width, std::uint64_t height, std::uint64_t encoded) {
+    return "unfolds to " + std::to_string(width) + " x " + std::to_string(height) + " from " +
+           std::to_string(encoded) + " bytes";
+}
 
 }  // namespace helio

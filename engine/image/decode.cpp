@@ -1,8 +1,10 @@
 /** @file What is known of an image file before a module decodes it. */
 #include "engine/image/backend.hpp"
+#include "engine/image/decoder_memory.hpp"
 
 #include <array>
 #include <cstring>
+#include <string_view>
 
 namespace helio {
 namespace {
@@ -51,6 +53,24 @@ bool startsWith(std::span<const std::byte> file, std::span<const unsigned char> 
     return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
 }
 
+/** The chunks that pixels come from. Texts and profiles are compressed, so that a few of them take any memory
+ * that libpng gives them, 8 MB each. */
+std::vector<std::byte> pixelChunks(std::span<const std::byte> file) {
+    std::vector<std::byte> kept(file.begin(), file.begin() + std::ptrdiff_t(pngMagic.size()));
+    kept.reserve(file.size());
+    for (std::size_t at = pngMagic.size(); at + 12 <= file.size();) {
+        const std::size_t size = std::size_t(bigEndian32(&file[at])) + 12;
+        const std::string_view name(reinterpret_cast<const char*>(&file[at + 4]), 4);
+        const bool isPixels =
+            name == "IHDR" || name == "PLTE" || name == "tRNS" || name == "IDAT" || name == "IEND";
+        const auto chunk = file.subspan(at, size);
+        if (isPixels) kept.insert(kept.end(), chunk.begin(), chunk.end());
+        if (name == "IEND") break;
+        at += size;
+    }
+    return kept;
+}
+
 /** RIFF, a length, WEBP. */
 bool isWebp(std::span<const std::byte> file) {
     return file.size() >= 12 && std::memcmp(file.data(), "RIFF", 4) == 0 &&
@@ -74,9 +94,16 @@ std::string pngFault(std::span<const std::byte> file) {
     return "is cut off";
 }
 
+bool isTextureFormat(std::span<const std::byte> file) {
+    return startsWith(file, pngMagic) || startsWith(file, jpegMagic) || isWebp(file);
+}
+
 std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image) {
+    budget.begin();
     if (std::string fault = pngFault(file); !fault.empty()) return fault;
-    if (startsWith(file, pngMagic)) return imageBackend().decode(file, "png", budget, image);
+    const DecoderMemory memory = decoderMemory(file);
+    if (!budget.hold(memory.bytes, file.size())) return unfoldsTo(memory.width, memory.height, file.size());
+    if (startsWith(file, pngMagic)) return imageBackend().decode(pixelChunks(file), "png", budget, image);
     if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", budget, image);
     if (isWebp(file)) return imageBackend().decode(file, "webp", budget, image);
     return "is neither PNG nor JPEG nor WebP";

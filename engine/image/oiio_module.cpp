@@ -1,5 +1,7 @@
 /** @file libheliograph_image.so: the one place that sees OpenImageIO. */
 #include "engine/image/backend.hpp"
+#include "engine/image/png.hpp"
+#include "engine/image/texel_reader.hpp"
 #include "engine/image/webp.hpp"
 
 #include <OpenImageIO/filesystem.h>
@@ -47,109 +49,33 @@ ImageSpec readHints() {
     return hints;
 }
 
+/** Rows of an image that OpenImageIO has opened. */
 template <class T>
-void spreadToRgba(const std::vector<T>& stored, std::size_t channels, T opaque, T* rgba) {
-    const std::size_t texels = stored.size() / channels;
-    const std::size_t colors = channels >= 3 ? 3 : 1;
-    for (std::size_t i = 0; i < texels; ++i) {
-        const T* const from = &stored[i * channels];
-        for (std::size_t c = 0; c < 3; ++c) rgba[i * 4 + c] = from[colors == 3 ? c : 0];
-        rgba[i * 4 + 3] = channels > colors ? from[colors] : opaque;
-    }
+std::string readTexels(ImageInput& input, const ImageSpec& spec, std::uint64_t encoded, ImageBudget& budget,
+                       DecodedImage& image) {
+    const bool isTiled = spec.tile_width != 0;
+    const auto readRows = [&](std::uint32_t first, std::uint32_t rows, T* values) -> std::string {
+        const auto type = OIIO::BaseTypeFromC<T>::value;
+        const int y = spec.y + int(first), end = y + int(rows);
+        const bool isRead = isTiled
+                                ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z,
+                                                   spec.z + 1, 0, spec.nchannels, type, values)
+                                : input.read_scanlines(0, 0, y, end, spec.z, 0, spec.nchannels, type, values);
+        return isRead ? std::string() : oneLine(input.geterror());
+    };
+    TexelReader<T> reader(std::uint32_t(spec.width), std::uint32_t(spec.height), std::size_t(spec.nchannels),
+                          encoded, budget);
+    return reader.read(isTiled ? std::uint32_t(spec.tile_height) : 0, readRows, image);
 }
-
-std::string tooLarge(const ImageSpec& spec, std::uint64_t encoded) {
-    return "unfolds to " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " from " +
-           std::to_string(encoded) + " bytes";
-}
-
-/** Rows are read in strips. As long as all texels are equal none is stored; a large image of one colour ends
- * as one texel. */
-template <class T>
-class TexelReader {
-public:
-    TexelReader(ImageInput& input, const ImageSpec& spec, T opaque, std::uint64_t encoded,
-                ImageBudget& budget)
-        : input_(input),
-          spec_(spec),
-          opaque_(opaque),
-          encoded_(encoded),
-          budget_(budget),
-          rowTexels_(std::size_t(spec.width)) {}
-
-    std::string read(DecodedImage& image) {
-        constexpr std::size_t smallImage = std::size_t(1) << 18;
-        const std::size_t texels = rowTexels_ * std::size_t(spec_.height);
-        if (texels <= smallImage && !allocate()) return tooLarge(spec_, encoded_);
-        // A tiled image is read whole: its strips would be as high as its tiles.
-        const bool isTiled = spec_.tile_width != 0;
-        const int strip = isTiled ? spec_.height : 64;
-        std::vector<T> stored, spread;
-        for (int y = 0; y < spec_.height; y += strip) {
-            const int rows = std::min(strip, spec_.height - y);
-            const std::size_t size = rowTexels_ * std::size_t(rows);
-            if (isTiled && !budget_.take(size * channels() * sizeof(T), encoded_))
-                return tooLarge(spec_, encoded_);
-            stored.resize(size * channels());
-            const auto type = OIIO::BaseTypeFromC<T>::value;
-            const bool isRead = isTiled
-                                    ? input_.read_image(0, 0, 0, -1, type, stored.data())
-                                    : input_.read_scanlines(0, 0, spec_.y + y, spec_.y + y + rows, spec_.z, 0,
-                                                            spec_.nchannels, type, stored.data());
-            if (!isRead) return oneLine(input_.geterror());
-            spread.resize(size * 4);
-            spreadToRgba(stored, channels(), opaque_, spread.data());
-            if (y == 0) std::copy_n(spread.data(), 4, color_.data());
-            if (texels_.empty() && !isOneColor(spread) && !allocate()) return tooLarge(spec_, encoded_);
-            if (!texels_.empty())
-                std::copy(spread.begin(), spread.end(), texels_.begin() + std::ptrdiff_t(rowTexels_ * 4) * y);
-        }
-        const bool isOne = texels_.empty();
-        image.width = isOne ? 1 : std::uint32_t(spec_.width);
-        image.height = isOne ? 1 : std::uint32_t(spec_.height);
-        if (isOne) texels_.assign(color_.begin(), color_.end());
-        image.texels = std::move(texels_);
-        return {};
-    }
-
-private:
-    std::size_t channels() const { return std::size_t(spec_.nchannels); }
-
-    bool isOneColor(const std::vector<T>& rgba) const {
-        for (std::size_t i = 0; i < rgba.size(); i += 4) {
-            if (!std::equal(color_.begin(), color_.end(), &rgba[i])) return false;
-        }
-        return true;
-    }
-
-    /** Room for all texels, of the colour that those so far have. */
-    bool allocate() {
-        const std::size_t values = rowTexels_ * std::size_t(spec_.height) * 4;
-        if (!budget_.take(values * sizeof(T), encoded_)) return false;
-        texels_.resize(values);
-        for (std::size_t i = 0; i < values; i += 4) std::copy_n(color_.data(), 4, &texels_[i]);
-        return true;
-    }
-
-    ImageInput& input_;
-    const ImageSpec& spec_;
-    T opaque_;
-    std::uint64_t encoded_;
-    ImageBudget& budget_;
-    std::size_t rowTexels_;
-    std::array<T, 4> color_{};
-    std::vector<T> texels_;
-};
 
 std::string readAnyTexels(ImageInput& input, const ImageSpec& spec, std::uint64_t encoded,
                           ImageBudget& budget, DecodedImage& image) {
     const std::uint64_t texels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
     if (std::string fault = checkSize(spec, texels, maximumTexels); !fault.empty()) return fault;
-    if (spec.format == TypeDesc::UINT8)
-        return TexelReader<std::uint8_t>(input, spec, 255, encoded, budget).read(image);
+    if (spec.format == TypeDesc::UINT8) return readTexels<std::uint8_t>(input, spec, encoded, budget, image);
     if (spec.format == TypeDesc::UINT16)
-        return TexelReader<std::uint16_t>(input, spec, 65535, encoded, budget).read(image);
-    return TexelReader<float>(input, spec, 1.0f, encoded, budget).read(image);
+        return readTexels<std::uint16_t>(input, spec, encoded, budget, image);
+    return readTexels<float>(input, spec, encoded, budget, image);
 }
 
 void readMetadata(const ImageSpec& spec, ImageF& image) {
@@ -199,6 +125,7 @@ public:
     std::string decode(std::span<const std::byte> file, const std::string& format, ImageBudget& budget,
                        DecodedImage& image) const override try {
         if (format == "webp") return decodeWebp(file, maximumTexels, budget, image);
+        if (format == "png") return decodePng(file, maximumTexels, budget, image);
         OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::create(format);

@@ -13,15 +13,13 @@ std::string decodeWebp(std::span<const std::byte> file, std::uint64_t maximumTex
     const auto width = std::uint32_t(features.width), height = std::uint32_t(features.height);
     if (std::uint64_t(width) * height > maximumTexels)
         return "is too large: " + std::to_string(width) + " x " + std::to_string(height);
-    if (!budget.take(std::uint64_t(width) * height * 4, file.size())) {
-        return "unfolds to " + std::to_string(width) + " x " + std::to_string(height) + " from " +
-               std::to_string(file.size()) + " bytes";
-    }
+    if (!budget.take(std::uint64_t(width) * height * 4, file.size()))
+        return unfoldsTo(width, height, file.size());
     std::vector<std::uint8_t> texels(std::size_t(width) * height * 4);
     if (WebPDecodeRGBAInto(bytes, file.size(), texels.data(), texels.size(), int(width) * 4) == nullptr)
         return "is damaged or cut off";
-    image.width = width;
-    image.height = height;
+    image.width = image.fileWidth = width;
+    image.height = image.fileHeight = height;
     image.texels = std::move(texels);
     return {};
 }

@@ -31,10 +31,10 @@ std::optional<std::filesystem::path> pathBelow(std::string_view text) {
 }
 
 std::filesystem::path fileBelow(const std::filesystem::path& file, const std::filesystem::path& relative) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".", named = folder / relative;
+    const fs::path folder = file.parent_path(), named = folder / relative;
     std::error_code error;  // what cannot be resolved is empty
     const fs::path real = fs::canonical(named, error);
-    if (real.empty() || liesBelow(real, fs::canonical(folder, error)) ||
+    if (real.empty() || liesBelow(real, fs::canonical(folder / ".", error)) ||
         liesBelow(real, fs::canonical(file, error).parent_path())) {
         return named;
     }

@@ -1,5 +1,6 @@
 #pragma once
 /** @file Image files in memory, decoded side by side. */
+#include "engine/image/backend.hpp"
 #include "engine/scene/load_monitor.hpp"
 
 #include <heliograph/scene.hpp>
@@ -22,9 +23,15 @@ struct DecodingResult {
     std::string place;
     std::string fault;  ///< empty for success
     TextureImage image;
+    std::uint32_t fileWidth = 0, fileHeight = 0;  ///< of the file: an image of one colour may be one texel
 };
 
-/** One result per image, in their order. */
-std::vector<DecodingResult> decodeImages(const std::vector<EncodedImage>& images, LoadMonitor& monitor);
+/** One result per image, in their order. Those out of proportion to their files are decoded one after the
+ * other at the end, so that which of them the budget is for does not depend on threads. */
+std::vector<DecodingResult> decodeImages(const std::vector<EncodedImage>& images, ImageBudget& budget,
+                                         LoadMonitor& monitor);
+
+/** The public loadTextureImage() with a budget. */
+TextureImage loadTextureImage(const std::filesystem::path& file, ImageBudget& budget);
 
 }  // namespace helio

@@ -330,6 +330,28 @@ def gltf_files():
                 "jpeg-magic": b"\xff\xd8\xff", "png-magic": b"\x89PNG\r\n\x1a\n"}
     for name, content in pictures.items():
         gltf("picture-" + name, image("picture.png"), picture__png=content)
+    def chunk(name, content):
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+    def filled(width, height, interlace):  # two colours, hardly any bytes
+        packer = zlib.compressobj()
+        rows = 3 * width * height + height if interlace == 0 else 3 * width * height + 2 * height
+        data = b"".join(packer.compress(b"\0" * (1 << 20)) for _ in range(rows >> 20))
+        data += packer.compress(b"\0" * (rows % (1 << 20) - 1) + b"\1") + packer.flush()
+        return (whole[:8] + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, interlace)) +
+                chunk(b"IDAT", data[:-6]) + chunk(b"IEND", b""))
+    text = zlib.compress(b"x" * 7900000)
+    comments = chunk(b"zTXt", b"Comment\0\0" + text) * 60 + chunk(b"iTXt", b"Comment\0\1\0\0\0" + text) * 60
+    ones = b"\xff\xc4\x00\x14%c\x01" + b"\0" * 16
+    def jpeg(frame, scan):  # 16000 x 16000 of three components
+        return (b"\xff\xd8\xff\xdb\x00\x43\x00" + b"\x01" * 64 + b"\xff" + frame + b"\x00\x11\x08" +
+                struct.pack(">HH", 16000, 16000) + b"\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00" + ones % 0 + ones % 16 +
+                b"\xff\xda\x00" + scan + b"\0" * 20000 + b"\xff\xd9")
+    bombs = {"interlaced.png": filled(10000, 10000, 1), "wide.png": filled(1000000, 64, 0),
+             "comments.png": whole[:33] + comments + chunk(b"IDAT", zlib.compress(b"\0" * 200)[:-6]) + chunk(b"IEND", b""),
+             "progressive.jpg": jpeg(b"\xc2", b"\x0c\x03\x01\x00\x02\x00\x03\x00\x00\x00\x00"),
+             "scan-each.jpg": jpeg(b"\xc0", b"\x08\x01\x01\x00\x00\x3f\x00")}
+    for name, content in bombs.items():
+        gltf("picture-" + name, image("picture.bin"), picture__bin=content)
     def typed(document):
         document["images"][0] = {"uri": "picture.png", "mimeType": "image/jpeg"}
     gltf("picture-of-other-type", typed, picture__png=whole)

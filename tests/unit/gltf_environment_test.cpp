@@ -78,6 +78,26 @@ TEST_F(GltfEnvironment, CubeMapsBecomeLatLongImages) {
     }
 }
 
+TEST_F(GltfEnvironment, LargeFacesOfOneColorAreFacesToo) {
+    constexpr std::uint32_t size = 520;  // above 512 images of one colour become one texel
+    GltfDocument file = withCube();
+    const std::string black = base64(png(0, 0, 0, size));
+    ImageF image;
+    image.width = image.height = size;
+    image.channels = {"R", "G", "B"};
+    for (std::uint32_t i = 0; i < size * size; ++i)
+        image.data.insert(image.data.end(), 3, i < size ? 0.0f : 1.0f);
+    saveImage(folder_ / "top.png", image);
+    for (std::size_t f = 0; f < 6; ++f) file.doc["images"][f]["uri"] = "data:image/png;base64," + black;
+    file.doc["images"][2] = {{"uri", "top.png"}};
+    const Scene scene = load(file);
+    EXPECT_EQ(scene.images.at(0).width, 4 * size);
+    EXPECT_EQ(along(scene, {0.1, 1, 0.1}), glm::vec3(1));
+    EXPECT_EQ(along(scene, {1, 0.1, 0.1}), glm::vec3(0));
+    file.doc["images"][4]["uri"] = "data:image/png;base64," + base64(png(0, 0, 0, size + 8));
+    EXPECT_THROW(load(file), InputError) << "of another size";
+}
+
 TEST_F(GltfEnvironment, MaterialsKeepTheirImages) {
     GltfDocument file = withCube();
     file.primitive()["material"] = 0;

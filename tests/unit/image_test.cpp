@@ -1,4 +1,5 @@
 #include "engine/image/backend.hpp"
+#include "engine/scene/image_decoding.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/file.hpp>
@@ -314,12 +315,44 @@ TEST_F(Images, LargeImagesOfOneColorAreOneTexel) {
 
 TEST(ImageBudget, ImagesOutOfProportionShareAnAllowance) {
     constexpr std::uint64_t mebibyte = 1 << 20;
-    ImageBudget budget;
+    ImageBudget budget(112 * mebibyte);
     EXPECT_TRUE(budget.take(1000 * mebibyte, 10 * mebibyte));  // a file of its size
     EXPECT_TRUE(budget.take(60 * mebibyte, 1000));
-    EXPECT_TRUE(budget.take(50 * mebibyte, 1000));
-    EXPECT_FALSE(budget.take(50 * mebibyte, 1000));
+    EXPECT_FALSE(budget.isExceeded());
+    budget.begin();
+    EXPECT_TRUE(budget.hold(40 * mebibyte, 1000));
+    EXPECT_FALSE(budget.take(40 * mebibyte, 1000));  // both at once
+    EXPECT_TRUE(budget.isExceeded());
+    budget.begin();
+    EXPECT_TRUE(budget.take(40 * mebibyte, 1000));
+    EXPECT_EQ(budget.left(), 12 * mebibyte);
     EXPECT_FALSE(budget.take(std::uint64_t(1) << 40, 1000));
+    EXPECT_FALSE(budget.hold(~std::uint64_t(0), 1000));
+}
+
+TEST_F(Images, TheAllowanceIsForTheFirstOfThem) {
+    std::vector<EncodedImage> images(5);
+    ImageF image = makeImage(600, 600, {"R", "G", "B"});
+    std::fill(image.data.begin(), image.data.end(), 0.5f);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (i == 1) image = makeImage(600, 600, {"R", "G", "B"});  // of many colours: in proportion
+        if (i == 2) std::fill(image.data.begin(), image.data.end(), 0.5f);
+        (i == 0 ? image.data.back() : image.data.front()) = 0.25f;  // the first is large at its end
+        saveImage(folder_ / "a.png", image);
+        const std::string file = bytesOf(folder_ / "a.png");
+        const auto* const first = reinterpret_cast<const std::byte*>(file.data());
+        images[i].owned.assign(first, first + file.size());
+        images[i].bytes = images[i].owned;
+        EXPECT_EQ(file.size() * 200 < 600 * 600 * 4, i != 1) << file.size();
+    }
+    const LoadOptions options;
+    LoadMonitor monitor(options);
+    for (int run = 0; run < 10; ++run) {
+        ImageBudget budget(2 * 600 * 600 * 4 + 1000);  // for two of them
+        const std::vector<DecodingResult> results = decodeImages(images, budget, monitor);
+        for (std::size_t i = 0; i < images.size(); ++i) EXPECT_EQ(results[i].fault.empty(), i < 3) << i;
+        EXPECT_EQ(budget.left(), 1000u);
+    }
 }
 
 TEST_F(Images, DoNotReplaceWhatIsNoRegularFile) {

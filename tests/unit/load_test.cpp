@@ -57,7 +57,7 @@ TEST_F(Gltf, LoadingStopsWhereverItIsAskedTo) {
     }
 }
 
-/** What is said where the scene's buffer file cannot be had; empty where the scene loads. */
+/** What is said where a scene cannot be loaded; empty where it can. */
 std::string faultOf(const fs::path& scene) {
     try {
         helio::load(scene.string());
@@ -65,6 +65,66 @@ std::string faultOf(const fs::path& scene) {
         return error.fault;
     }
     return {};
+}
+
+/** Strings above 64 KiB are left where they lie in the file. */
+TEST_F(Gltf, LongStringsAreReadInPlace) {
+    constexpr std::size_t count = 9000;
+    GltfDocument file = GltfDocument::triangle();
+    std::vector<float> positions;
+    for (std::size_t i = 0; i < 3 * count; ++i) positions.push_back(float(i * 37 % 1000) / 7);
+    file.primitive()["attributes"]["POSITION"] = file.addAccessor(positions, "VEC3", count);
+    file.doc["nodes"][0]["name"] = std::string(100000, 'x');
+    file.doc["asset"]["copyright"] = std::string(70000, 'c') + "\"\\";
+    const std::string plain = file.withInlineBuffer().dump();
+    ASSERT_GT(plain.size(), 300000u);
+    const auto replaced = [&](char from, const std::string& to) {
+        std::string text = plain;
+        for (std::size_t at = text.find("base64,") + 7; text[at] != '"'; ++at) {
+            if (text[at] != from) continue;
+            text.replace(at, 1, to);
+            at += to.size() - 1;
+        }
+        EXPECT_GT(text.size(), plain.size());
+        return text;
+    };
+    // Some writers escape slashes and plus signs in JSON.
+    for (const std::string& text : {plain, replaced('/', "\\/"), replaced('+', "\\u002B")}) {
+        const Scene scene = helio::load(write("long.gltf", text).string());
+        const auto& found = scene.meshes[0].primitives.at(0).positions;
+        ASSERT_EQ(found.size(), count);
+        EXPECT_EQ(std::memcmp(found.data(), positions.data(), positions.size() * sizeof(float)), 0);
+        EXPECT_EQ(scene.nodes[0].name, "");
+    }
+    std::string broken = plain + "x";
+    try {
+        helio::load(write("long.gltf", broken).string());
+        FAIL() << "loads";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.place, "line 1, byte " + std::to_string(broken.size()));
+    }
+    broken = plain;
+    broken[broken.find("base64,") + 50000] = '!';
+    write("long.gltf", broken);
+    EXPECT_EQ(faultOf(folder_ / "long.gltf"), "is no valid base64");
+}
+
+TEST_F(Gltf, ManyNodesThatSaySomethingLoad) {
+    constexpr int count = 250000;
+    std::string nodes, roots;
+    for (int i = 0; i < count; ++i) {
+        nodes += (i == 0 ? "{\"mesh\":0,\"translation\":[" : ",{\"mesh\":0,\"translation\":[") +
+                 std::to_string(i) + ",0,0]}";
+        roots += (i == 0 ? "" : ",") + std::to_string(i);
+    }
+    json document = GltfDocument::triangle().withInlineBuffer();
+    document["nodes"] = document["scenes"][0]["nodes"] = "@";
+    std::string text = document.dump();
+    text.replace(text.find("\"nodes\":\"@\""), 11, "\"nodes\":[" + nodes + "]");
+    text.replace(text.find("\"nodes\":\"@\""), 11, "\"nodes\":[" + roots + "]");
+    const Scene scene = helio::load(write("many.gltf", text).string());
+    EXPECT_EQ(scene.triangleCount(), std::uint64_t(count));
+    EXPECT_EQ(scene.nodes.back().translation.x, float(count - 1));
 }
 
 TEST_F(Gltf, SymbolicLinksStayInTheFolder) {

@@ -2,6 +2,7 @@
 
 #include "engine/scene/extras/schema.hpp"
 #include "engine/scene/folder.hpp"
+#include "engine/scene/image_decoding.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -118,7 +119,7 @@ LensTable lensTableOf(const json& from) {
 }
 
 Environment environmentOf(const std::string& file, const std::string& pointer, const json& from,
-                          Scene& scene) {
+                          ImageBudget& budget, Scene& scene) {
     Environment to;
     to.radiance = from.contains("radiance") ? channels(from["radiance"]) : glm::vec3(1);
     if (from.contains("rotation")) {
@@ -134,7 +135,7 @@ Environment environmentOf(const std::string& file, const std::string& pointer, c
                          "give a path relative to that folder and below it");
     }
     try {
-        scene.images.push_back(loadTextureImage(fileBelow(file, *path)));
+        scene.images.push_back(loadTextureImage(fileBelow(file, *path), budget));
     } catch (const InputError& error) {
         throw InputError(file, pointer + "/image", error.fault, error.remedy);
     }
@@ -218,12 +219,13 @@ void readNode(const std::string& file, const json& object, std::size_t index, No
     scene.meters.push_back(std::move(meter));
 }
 
-void readScene(const std::string& file, const std::string& pointer, const json& object, Scene& scene) {
+void readScene(const std::string& file, const std::string& pointer, const json& object, ImageBudget& budget,
+               Scene& scene) {
     const json* const own = extrasOf(object);
     if (own == nullptr) return;
     if (own->contains("environment"))
-        scene.environment =
-            environmentOf(file, pointer + "/extras/heliograph/environment", (*own)["environment"], scene);
+        scene.environment = environmentOf(file, pointer + "/extras/heliograph/environment",
+                                          (*own)["environment"], budget, scene);
 }
 
 }  // namespace helio::extras

@@ -3,6 +3,8 @@
  * extras.heliograph, what glTF can't say. heliograph.schema.json describes it; a new property is added there,
  * to the scene model, and to the reader of its kind in extras.cpp.
  */
+#include "engine/image/backend.hpp"
+
 #include <heliograph/scene.hpp>
 
 #include <nlohmann/json.hpp>
@@ -24,6 +26,6 @@ void readCamera(const std::string& file, const nlohmann::json& object, int index
 void readNode(const std::string& file, const nlohmann::json& object, std::size_t index, Node& node,
               Scene& scene);
 void readScene(const std::string& file, const std::string& pointer, const nlohmann::json& object,
-               Scene& scene);
+               ImageBudget& budget, Scene& scene);
 
 }  // namespace helio::extras

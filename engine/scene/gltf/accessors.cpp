@@ -85,7 +85,7 @@ Asset::Asset(Container container)
             if (known != loaded.end()) {
                 bytes = known->second;
             } else {
-                bytes = owned_.emplace_back(readUri(file(), place + ".uri", uri));
+                bytes = owned_.emplace_back(readUri(file(), place + ".uri", this->uri(uri)));
                 bytes_ += bytes.size();
                 if (uri.starts_with("data:")) {
                     uri = std::string();  // a third more than its bytes, which are there now

@@ -46,6 +46,16 @@ public:
     std::size_t bytes() const { return bytes_; }
     /** Bytes that the document takes in memory. */
     std::size_t documentBytes() const { return container_.documentBytes; }
+    /** Bytes of the JSON text. */
+    std::size_t textBytes() const { return container_.textBytes; }
+    /** Bytes that the asset's own lists take. */
+    std::size_t listBytes() const {
+        return views_.size() * sizeof(BufferView) + accessors_.size() * sizeof(Accessor);
+    }
+    /** A URI of the document, as it is in the text. */
+    std::string_view uri(const std::string& value) const {
+        return container_.longString(value).value_or(value);
+    }
     /** Bytes of the buffers that an accessor reads; 0 for one without data. */
     std::size_t dataBytes(int accessor) const;
     /** Refuses an accessor whose elements do not all lie in its buffers: its count may then be trusted. */

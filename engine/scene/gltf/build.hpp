@@ -45,14 +45,18 @@ void buildEnvironment(const Asset& asset, MemoryBudget& memory, LoadMonitor& mon
 /** Decodes images for textures: each distinct content once. */
 class ImageLoader {
 public:
-    explicit ImageLoader(const Asset& asset) : asset_(asset) {}
+    ImageLoader(const Asset& asset, MemoryBudget& memory) : asset_(asset), memory_(memory) {}
     /** The scene's image for an index into the asset's images. Reads it; decoding waits for decodeAll. */
     int use(int image);
     /** Decodes what was used, side by side, into Scene::images. */
     void decodeAll(LoadMonitor& monitor, helio::Scene& scene);
+    /** Width and height of the file of the scene's image, which is one texel where it is of one colour. */
+    glm::uvec2 fileSize(std::size_t image) const { return sizes_[image]; }
 
 private:
     const Asset& asset_;
+    MemoryBudget& memory_;
+    std::vector<glm::uvec2> sizes_;
     std::vector<int> known_;  ///< per image of the asset: into sources_, -1 for not used yet
     std::vector<EncodedImage> sources_;
 };

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdint>
 #include <string_view>
 
@@ -19,10 +20,14 @@ std::uint32_t littleEndian32(std::span<const std::byte> bytes, std::size_t at) {
     return value;
 }
 
-void parseInto(Container& container, std::span<const std::byte> text) {
-    Json json = readJson(container.file, {reinterpret_cast<const char*>(text.data()), text.size()});
+void parseInto(Container& container, std::span<const std::byte> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    Json json = readJson(container.file, text);
     container.document = std::move(json.document);
     container.documentBytes = json.bytes;
+    container.textBytes = text.size();
+    for (const LongString& one : json.longStrings)
+        container.longStrings.push_back(text.substr(one.begin, one.end - one.begin));
 }
 
 /** A GLB's header is magic, version, length; then chunks of length, type, data: JSON first, BIN second. */
@@ -80,9 +85,18 @@ Container readContainer(const std::string& file) {
         parseBinary(container);
     } else {
         parseInto(container, container.bytes);
-        container.bytes = {};
+        if (container.longStrings.empty()) container.bytes = {};
     }
     return container;
+}
+
+std::optional<std::string_view> Container::longString(const std::string& value) const {
+    std::size_t index = 0;
+    if (value.empty() || value[0] != longStringMark) return std::nullopt;
+    const char* const end = value.data() + value.size();
+    const auto [at, error] = std::from_chars(value.data() + 1, end, index);
+    if (at != end || error != std::errc() || index >= longStrings.size()) return std::nullopt;
+    return longStrings[index];
 }
 
 }  // namespace helio::gltf

@@ -3,8 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace helio::gltf {
@@ -18,7 +20,12 @@ struct Container {
     bool hasBinaryChunk = false;
     std::vector<std::string> warnings;
     nlohmann::json document;
-    std::size_t documentBytes = 0;  ///< that the document takes
+    std::size_t documentBytes = 0;              ///< that the document takes
+    std::size_t textBytes = 0;                  ///< of the JSON
+    std::vector<std::string_view> longStrings;  ///< as the text has them, into bytes; Json says which
+
+    /** The long string that a member's value stands for; none for another value. */
+    std::optional<std::string_view> longString(const std::string& value) const;
 };
 
 /** Reads a file; GLB by its first bytes, whatever it is called. Throws InputError. */

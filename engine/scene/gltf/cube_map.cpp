@@ -38,9 +38,10 @@ glm::vec3 radianceAt(const TextureImage& image, std::size_t texel) {
 /** Linear faces, and radiance along a direction. */
 class Cube {
 public:
-    explicit Cube(const std::array<const TextureImage*, 6>& faces) : size_(faces[0]->width) {
+    explicit Cube(const std::array<const TextureImage*, 6>& faces) {
         for (std::size_t f = 0; f < 6; ++f) {
-            faces_[f].resize(std::size_t(size_) * size_);
+            sizes_[f] = faces[f]->width;
+            faces_[f].resize(std::size_t(sizes_[f]) * sizes_[f]);
             for (std::size_t i = 0; i < faces_[f].size(); ++i) faces_[f][i] = radianceAt(*faces[f], i);
         }
     }
@@ -56,19 +57,20 @@ public:
 private:
     /** s and t from -1 to 1; the stored face is flipped. */
     glm::vec3 on(std::size_t face, double s, double t) const {
-        const double last = size_ - 1.0;
-        const double x = std::clamp((1 - s) / 2 * size_ - 0.5, 0.0, last);
-        const double y = std::clamp((1 + t) / 2 * size_ - 0.5, 0.0, last);
+        const std::uint32_t size = sizes_[face];
+        const double last = size - 1.0;
+        const double x = std::clamp((1 - s) / 2 * size - 0.5, 0.0, last);
+        const double y = std::clamp((1 + t) / 2 * size - 0.5, 0.0, last);
         const auto x0 = std::size_t(x), y0 = std::size_t(y);
         const std::size_t x1 = std::min(x0 + 1, std::size_t(last)), y1 = std::min(y0 + 1, std::size_t(last));
         const auto at = [&](std::size_t column, std::size_t row) {
-            return faces_[face][row * size_ + column];
+            return faces_[face][row * size + column];
         };
         const float u = float(x - double(x0)), v = float(y - double(y0));
         return glm::mix(glm::mix(at(x0, y0), at(x1, y0), u), glm::mix(at(x0, y1), at(x1, y1), u), v);
     }
 
-    std::uint32_t size_;
+    std::array<std::uint32_t, 6> sizes_{};
     std::array<std::vector<glm::vec3>, 6> faces_;
 };
 
@@ -81,13 +83,15 @@ std::size_t latLongTexels(std::uint32_t size) {
 
 TextureImage latLongOf(const std::array<const TextureImage*, 6>& faces) {
     const Cube cube(faces);
+    std::uint32_t size = 1;
+    for (const TextureImage* const face : faces) size = std::max(size, face->width);
     TextureImage image;
-    image.width = widthOf(faces[0]->width);
+    image.width = widthOf(size);
     image.height = image.width / 2;
     auto& texels =
         image.texels.emplace<std::vector<float>>(std::size_t(image.width) * image.height * 4, 1.0f);
     // Where faces are finer than the image, each of its texels is the mean of so many samples a side.
-    const std::uint32_t side = (faces[0]->width * 4 + image.width - 1) / image.width;
+    const std::uint32_t side = (size * 4 + image.width - 1) / image.width;
     constexpr double pi = std::numbers::pi;
     tbb::parallel_for(std::uint32_t(0), image.height, [&](std::uint32_t row) {
         for (std::uint32_t column = 0; column < image.width; ++column) {

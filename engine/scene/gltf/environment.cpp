@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace helio::gltf {
 namespace {
 
@@ -25,21 +27,22 @@ glm::quat rotationOf(const json& light) {
 void buildImageBased(const Asset& asset, const json& light, const std::string& place, MemoryBudget& memory,
                      LoadMonitor& monitor, helio::Scene& scene) {
     const json& first = light["specularImages"][0];
-    ImageLoader loader(asset);
+    ImageLoader loader(asset, memory);
     std::array<std::size_t, 6> at{};
     for (std::size_t f = 0; f < 6; ++f) at[f] = std::size_t(loader.use(int(first[f].get<double>())));
     helio::Scene decoded;
     loader.decodeAll(monitor, decoded);
     std::array<const TextureImage*, 6> faces{};
+    std::uint32_t size = 1;  // of those of more than one colour
     for (std::size_t f = 0; f < 6; ++f) {
         faces[f] = &decoded.images[at[f]];
-        if (faces[f]->width != faces[f]->height || faces[f]->width != faces[0]->width) {
+        const glm::uvec2 stored = loader.fileSize(at[f]);
+        if (stored.x != stored.y || stored.x != loader.fileSize(at[0]).x) {
             throw InputError(asset.file(), fmt::format("{}.specularImages[0][{}]", place, f),
-                             fmt::format("is {} x {}", faces[f]->width, faces[f]->height),
-                             "give six squares of one size");
+                             fmt::format("is {} x {}", stored.x, stored.y), "give six squares of one size");
         }
+        size = std::max(size, faces[f]->width);
     }
-    const std::uint32_t size = faces[0]->width;
     memory.take(place, latLongTexels(size) * 4 * sizeof(float),
                 std::size_t(size) * size * 6 * sizeof(glm::vec3));
     Environment environment;
@@ -65,7 +68,8 @@ void buildEnvironment(const Asset& asset, MemoryBudget& memory, LoadMonitor& mon
                         fmt::format("extensions.EXT_lights_image_based.lights[{}]", light), memory, monitor,
                         scene);
     }
-    extras::readScene(asset.file(), fmt::format("/scenes/{}", shown), from, scene);
+    ImageBudget budget(memory.left());
+    extras::readScene(asset.file(), fmt::format("/scenes/{}", shown), from, budget, scene);
 }
 
 }  // namespace helio::gltf

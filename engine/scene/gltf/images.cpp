@@ -22,7 +22,7 @@ int ImageLoader::use(int image) {
     source.place = place;
     source.name = json.value("name", "");
     if (json.contains("uri")) {
-        const auto& uri = json["uri"].get_ref<const std::string&>();
+        const std::string_view uri = asset_.uri(json["uri"].get_ref<const std::string&>());
         if (source.name.empty() && !uri.starts_with("data:")) source.name = uri;
         source.owned = readUri(asset_.file(), place + ".uri", uri);
         source.bytes = source.owned;
@@ -62,7 +62,11 @@ void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
         if (json.contains("uri") && json.contains("bufferView"))
             warn(scene, fmt::format("images[{}] has a uri and a bufferView; the uri counts", i));
     }
-    for (DecodingResult& image : decodeImages(sources_, monitor)) {
+    ImageBudget budget(memory_.left());
+    std::vector<DecodingResult> results = decodeImages(sources_, budget, monitor);
+    memory_.take("images", memory_.left() - std::size_t(budget.left()), 0);
+    for (DecodingResult& image : results) {
+        sizes_.emplace_back(image.fileWidth, image.fileHeight);
         if (!image.fault.empty())
             throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG, JPEG or WebP image");
         scene.images.push_back(std::move(image.image));

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <span>
 #include <vector>
 
 namespace helio::gltf {
@@ -17,17 +19,24 @@ using nlohmann::json;
 
 constexpr int maximumNesting = 100;
 
-/** What walks a document recurses; a deep file must not overflow its stack. */
-void checkNesting(const std::string& file, std::string_view text) {
+/** The parser keeps a string three times over. */
+constexpr std::size_t longest = std::size_t(1) << 16;
+
+/** What walks a document recurses; a deep file must not overflow its stack. Returns the long strings. */
+std::vector<LongString> scan(const std::string& file, std::string_view text) {
+    std::vector<LongString> longStrings;
     int depth = 0;
-    bool isInString = false;
+    std::size_t strings = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
-        if (isInString) {
-            if (c == '\\') ++i;
-            if (c == '"') isInString = false;
-        } else if (c == '"') {
-            isInString = true;
+        if (c == '"') {
+            const std::size_t begin = i + 1;
+            for (++i; i < text.size() && text[i] != '"'; ++i) {
+                if (text[i] == '\\') ++i;
+            }
+            if (i >= text.size()) break;  // an open string, which the parser refuses
+            if (i - begin > longest) longStrings.push_back({strings, begin, i});
+            ++strings;
         } else if (c == '{' || c == '[') {
             if (++depth > maximumNesting) {
                 throw InputError(file, fmt::format("byte {}", i), "its JSON is nested too deeply",
@@ -37,7 +46,50 @@ void checkNesting(const std::string& file, std::string_view text) {
             --depth;
         }
     }
+    return longStrings;
 }
+
+/** The text without the content of its long strings, a character at a time. */
+class TextIterator {
+public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    /** Writes to `place` where it is. */
+    TextIterator(std::string_view text, std::span<const LongString> left, std::size_t at, std::size_t* place)
+        : text_(text), left_(left), at_(at), place_(place) {
+        skip();
+    }
+    reference operator*() const { return text_[at_]; }
+    TextIterator& operator++() {
+        ++at_;
+        skip();
+        return *this;
+    }
+    TextIterator operator++(int) {
+        TextIterator before = *this;
+        ++*this;
+        return before;
+    }
+    bool operator==(const TextIterator& other) const { return at_ == other.at_; }
+
+private:
+    void skip() {
+        if (!left_.empty() && at_ == left_.front().begin) {
+            at_ = left_.front().end;
+            left_ = left_.subspan(1);
+        }
+        if (place_ != nullptr) *place_ = at_;
+    }
+
+    std::string_view text_;
+    std::span<const LongString> left_;
+    std::size_t at_;
+    std::size_t* place_;
+};
 
 /** What the parser says is wrong, without its number and its place, in one line of printable ASCII: it quotes
  * the file, which may hold anything. */
@@ -61,9 +113,13 @@ bool isDocumentMember(std::string_view name) {
 class DocumentBuilder {
 public:
     DocumentBuilder(const std::string& file, std::string_view text)
-        : file_(file), text_(text), most_(maximumUnfolded(text.size())) {}
+        : file_(file), text_(text), most_(maximumDocument(text.size())), longStrings_(scan(file, text)) {}
 
-    Json take() { return {std::move(root_), bytes_}; }
+    Json parse() {
+        json::sax_parse(TextIterator(text_, longStrings_, 0, &place_),
+                        TextIterator(text_, {}, text_.size(), nullptr), this);
+        return {std::move(root_), bytes_, std::move(longStrings_)};
+    }
 
     bool null() { return add(nullptr); }
     bool boolean(bool value) { return add(value); }
@@ -72,6 +128,7 @@ public:
     bool number_float(json::number_float_t value, const std::string&) { return add(value); }
     bool binary(json::binary_t&) { return add(nullptr); }
     bool string(std::string& value) {
+        if (isLong() && key_ == "uri") value = longStringMark + std::to_string(longStringsMet_ - 1);
         if (!isLeftOut()) charge(stringBytes(value));
         return add(std::move(value));
     }
@@ -80,6 +137,7 @@ public:
     bool end_object() { return end(); }
     bool end_array() { return end(); }
     bool key(std::string& name) {
+        isLong();
         if (leftOut_ > 0) return true;
         const Part part = open_.back().part;
         key_ = std::move(name);
@@ -96,6 +154,8 @@ public:
         return true;
     }
     bool parse_error(std::size_t byte, const std::string&, const json::exception& error) {
+        for (std::size_t i = 0; i < longStrings_.size() && byte > longStrings_[i].begin; ++i)
+            byte += longStrings_[i].end - longStrings_[i].begin;  // which the parser has not seen
         const auto end = text_.begin() + std::ptrdiff_t(std::min(byte, text_.size()));
         const auto lines = std::count(text_.begin(), end, '\n');
         const std::string place = fmt::format("line {}, byte {}", lines + 1, byte);
@@ -121,11 +181,20 @@ private:
 
     void charge(std::size_t bytes, std::size_t transient = 0) {
         bytes_ += bytes;
-        if (bytes_ + transient <= most_) return;
+        if (bytes_ + transient <= most_ || bytes_ <= documentProportion * place_) return;
         throw InputError(file_, member_.empty() ? "document" : member_,
                          fmt::format("unfolds the JSON to more than {} MiB, for a file of {} bytes",
                                      most_ >> 20, text_.size()),
                          "leave out elements that say nothing");
+    }
+
+    /** Whether the string that comes next in the text is a long one, whose content was not read. */
+    bool isLong() {
+        const bool isLong =
+            longStringsMet_ < longStrings_.size() && longStrings_[longStringsMet_].ordinal == stringsMet_;
+        longStringsMet_ += isLong ? 1 : 0;
+        ++stringsMet_;
+        return isLong;
     }
 
     bool isLeftOut() const { return leftOut_ > 0 || isNextLeftOut_; }
@@ -190,6 +259,9 @@ private:
     const std::string& file_;
     std::string_view text_;
     std::size_t most_, bytes_ = 0;
+    std::vector<LongString> longStrings_;
+    std::size_t place_ = 0;  ///< of the parser in the text
+    std::size_t stringsMet_ = 0, longStringsMet_ = 0;
     json root_;
     std::vector<Open> open_;
     std::string key_, member_;  ///< of the innermost object; of the document
@@ -207,10 +279,7 @@ Json readJson(const std::string& file, std::string_view text) {
         throw InputError(file, fmt::format("byte {}", end), "has a NUL within its JSON",
                          "write the file again");
     text = text.substr(0, end);
-    checkNesting(file, text);
-    DocumentBuilder builder(file, text);
-    json::sax_parse(text.begin(), text.end(), &builder);
-    return builder.take();
+    return DocumentBuilder(file, text).parse();
 }
 
 }  // namespace helio::gltf

@@ -33,7 +33,8 @@ void setSampler(const json& sampler, Texture& texture) {
 /** One material on its way, with the asset's textures it brings along. */
 class MaterialBuilder {
 public:
-    MaterialBuilder(const Asset& asset, helio::Scene& scene) : asset_(asset), scene_(scene), images_(asset) {}
+    MaterialBuilder(const Asset& asset, MemoryBudget& memory, helio::Scene& scene)
+        : asset_(asset), scene_(scene), images_(asset, memory) {}
 
     Material build(const json& from, int index, bool isUsed) {
         material_ = {};
@@ -254,7 +255,7 @@ private:
 
 void buildMaterials(const Asset& asset, const std::set<int>& used, MemoryBudget& memory, LoadMonitor& monitor,
                     helio::Scene& scene) {
-    MaterialBuilder builder(asset, scene);
+    MaterialBuilder builder(asset, memory, scene);
     int index = 0;
     const json& materials = listOf(asset.document(), "materials");
     memory.take("materials", materials.size() * sizeof(Material), 0);

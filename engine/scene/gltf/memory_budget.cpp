@@ -6,10 +6,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace helio::gltf {
 
 MemoryBudget::MemoryBudget(const Asset& asset)
-    : asset_(asset), most_(maximumUnfolded(asset.bytes())), used_(asset.documentBytes()) {}
+    : asset_(asset),
+      most_(std::max(maximumUnfolded(asset.bytes()), sceneProportion * asset.textBytes())),
+      used_(asset.documentBytes() + asset.listBytes()) {}
 
 void MemoryBudget::take(const std::string& place, std::size_t kept, std::size_t transient) {
     if (kept > most_ || transient > most_ || used_ + kept + transient > most_) {

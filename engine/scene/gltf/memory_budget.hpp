@@ -2,6 +2,7 @@
 /** @file How much a glTF file may unfold to. */
 #include "engine/scene/gltf/accessors.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -19,6 +20,9 @@ public:
     /** The same for what comes of an accessor's data: free until accessors have read as many bytes as there
      * are. */
     void takeFor(int accessor, const std::string& place, std::size_t kept, std::size_t transient);
+
+    /** What may still be taken. */
+    std::size_t left() const { return most_ - std::min(used_, most_); }
 
 private:
     const Asset& asset_;

@@ -59,7 +59,10 @@ std::vector<std::byte> readDataUri(const std::string& file, const std::string& p
     if (uri.substr(0, comma).ends_with(";base64")) {
         if (!decodeBase64(data, bytes))
             throw InputError(file, place, "is no valid base64", "encode the data again");
+    } else if (data.find('\\') != std::string_view::npos) {
+        throw InputError(file, place, "is a data URI with escapes", "encode the data as base64");
     } else {
+        bytes.reserve(data.size());
         for (char c : percentDecoded(data)) bytes.push_back(std::byte(c));
     }
     return bytes;
@@ -69,14 +72,22 @@ std::vector<std::byte> readDataUri(const std::string& file, const std::string& p
 
 bool decodeBase64(std::string_view text, std::vector<std::byte>& bytes) {
     while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-    if (text.size() % 4 == 1) return false;
     bytes.clear();
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
     int bitCount = 0;
-    for (char c : text) {
+    std::size_t characters = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        char c = text[i];
+        if (c == '\\' && text.substr(i + 1, 1) == "/") continue;
+        if (c == '\\' && text.substr(i + 1, 3) == "u00" && i + 5 < text.size()) {
+            const int high = hexDigit(text[i + 4]), low = hexDigit(text[i + 5]);
+            c = high >= 0 && high < 8 && low >= 0 ? char(high * 16 + low) : '\\';
+            i += 5;
+        }
         const int value = base64Values[std::uint8_t(c)];
         if (value < 0) return false;
+        ++characters;
         bits = bits << 6 | std::uint32_t(value);
         bitCount += 6;
         if (bitCount >= 8) {
@@ -84,12 +95,12 @@ bool decodeBase64(std::string_view text, std::vector<std::byte>& bytes) {
             bytes.push_back(std::byte(bits >> bitCount & 0xff));
         }
     }
-    return true;
+    return characters % 4 != 1;
 }
 
-std::vector<std::byte> readUri(const std::string& file, const std::string& place, const std::string& uri) {
+std::vector<std::byte> readUri(const std::string& file, const std::string& place, std::string_view uri) {
     if (uri.starts_with("data:")) return readDataUri(file, place, uri);
-    const std::string shown = uri.substr(0, 100);
+    const std::string shown(uri.substr(0, 100));
     if (hasScheme(uri)) {
         throw InputError(file, place, "'" + shown + "' is no file", "give a path relative to the glTF file");
     }

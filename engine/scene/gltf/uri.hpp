@@ -7,13 +7,14 @@
 
 namespace helio::gltf {
 
-/** Base64 (RFC 4648, padding optional). False for a character or a length that it cannot have. */
+/** Base64 (RFC 4648, padding optional), of which JSON may have escaped characters. False for a character or a
+ * length that it cannot have. */
 bool decodeBase64(std::string_view text, std::vector<std::byte>& bytes);
 
 /**
  * The bytes behind a URI. Files must lie in the folder of `file` or below: an absolute path, "..", a symbolic
  * link out of it, or another scheme is refused. Throws InputError(file, place, ...).
  */
-std::vector<std::byte> readUri(const std::string& file, const std::string& place, const std::string& uri);
+std::vector<std::byte> readUri(const std::string& file, const std::string& place, std::string_view uri);
 
 }  // namespace helio::gltf

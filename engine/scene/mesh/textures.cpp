@@ -28,7 +28,10 @@ int TextureFiles::texture(const std::string& name, bool isClamped) {
 }
 
 void TextureFiles::decode(LoadMonitor& monitor) {
-    for (DecodingResult& result : decodeImages(images_, monitor)) {
+    // A material takes some 2 KiB.
+    ImageBudget budget(ImageBudget::standard -
+                       std::min(scene_.materials.size() * 2048, std::size_t(ImageBudget::standard)));
+    for (DecodingResult& result : decodeImages(images_, budget, monitor)) {
         if (!result.fault.empty()) {
             warn(scene_, fmt::format("texture {} {}; white is shown", shown(result.place), result.fault));
             result.image.width = result.image.height = 1;

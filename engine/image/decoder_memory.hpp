@@ -1,0 +1,19 @@
+#pragma once
+/** @file What libpng, libjpeg and libwebp keep of a whole image while they decode it, by the file's header.
+ */
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace helio {
+
+struct DecoderMemory {
+    std::uint64_t bytes = 0;  ///< 0 where rows come one after the other
+    std::uint32_t width = 0, height = 0;
+};
+
+/** An interlaced PNG's pixels, the coefficients of a JPEG whose scans refine it or hold single components, a
+ * lossless WebP's pixels. */
+DecoderMemory decoderMemory(std::span<const std::byte> file);
+
+}  // namespace helio
