@@ -139,6 +139,13 @@ TEST(DeviceTransforms, Rotations) {
     const auto t = many([&](int) { return random.between(0, 1); });
     DEVICE_CHECK(Vec4, 5e-7, (return quaternionSlerp(quaternionAbout(a, 1.0), quaternionAbout(a, b), c);),
                  axis, t, t);
+    DEVICE_CHECK(Vec4, 5e-7, (return quaternionSlerp(quaternionAbout(a, 1.0), -quaternionAbout(a, b), c);),
+                 axis, t, t);
+    DEVICE_CHECK(Vec4, 1e-6,
+                 (return quaternionProduct(quaternionAbout(a, b), quaternionAbout(Vec3(a.y, a.z, a.x), b));),
+                 axis, angle);
+    DEVICE_CHECK(Vec3, 1e-6, (return quaternionRotate(quaternionAbout(a, b), Vec3(1.0, 0.0, 0.0));), axis,
+                 angle);
 }
 
 TEST(DeviceTransforms, AffineAndViews) {
