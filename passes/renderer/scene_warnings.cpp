@@ -21,6 +21,23 @@ int missingSet(const Material& material, const Primitive& primitive) {
     return -1;
 }
 
+/** One warning for many places of a scene: what is said of the first, and how many further ones there are. */
+class FirstOfMany {
+public:
+    template <class Say>
+    void add(Say&& say) {
+        if (count_++ == 0) first_ = say();
+    }
+    void addTo(std::vector<std::string>& warnings, const char* places) {
+        if (count_ > 1) first_ += fmt::format(" ({} further {} likewise)", count_ - 1, places);
+        if (count_ > 0) warnings.push_back(std::move(first_));
+    }
+
+private:
+    std::string first_;
+    std::size_t count_ = 0;
+};
+
 std::vector<bool> shownMeshes(const Scene& scene) {
     std::vector<bool> shown(scene.meshes.size(), false);
     for (const Instance& instance : scene.instances()) shown[std::size_t(instance.mesh)] = true;
@@ -31,27 +48,22 @@ std::vector<bool> shownMeshes(const Scene& scene) {
 
 void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
     const std::vector<bool> shown = shownMeshes(scene);
-    std::string first;
-    std::size_t further = 0;
+    FirstOfMany primitivesWithout;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         const auto& primitives = scene.meshes[m].primitives;
         for (std::size_t p = 0; shown[m] && p < primitives.size(); ++p) {
             if (primitives[p].material < 0) continue;
             const int set = missingSet(scene.materials[std::size_t(primitives[p].material)], primitives[p]);
             if (set < 0) continue;
-            if (!first.empty()) {
-                ++further;
-                continue;
-            }
-            first = fmt::format(
-                "mesh {} primitive {} has no texture coordinate set {}, which material {} names: it is taken "
-                "as "
-                "0, 0",
-                m, p, set, primitives[p].material);
+            primitivesWithout.add([&] {
+                return fmt::format(
+                    "mesh {} primitive {} has no texture coordinate set {}, which material {} names: it is "
+                    "taken as 0, 0",
+                    m, p, set, primitives[p].material);
+            });
         }
     }
-    if (further > 0) first += fmt::format(" ({} further primitives likewise)", further);
-    if (!first.empty()) warnings.push_back(std::move(first));
+    primitivesWithout.addTo(warnings, "primitives");
 }
 
 void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vector<std::string>& warnings) {
@@ -78,8 +90,7 @@ void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vecto
 
 void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings) {
     const std::vector<bool> shown = shownMeshes(scene);
-    std::string first;
-    std::size_t further = 0;
+    FirstOfMany farMeshes;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         if (!shown[m]) continue;
         glm::vec3 lower(std::numeric_limits<float>::infinity()), upper = -lower;
@@ -93,18 +104,15 @@ void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings) {
         const double extent = std::max({size.x, size.y, size.z}),
                      distance = std::max({reach.x, reach.y, reach.z});
         if (!(extent > 0) || distance <= kFarthestVertices * extent) continue;
-        if (!first.empty()) {
-            ++further;
-            continue;
-        }
-        first = fmt::format(
-            "mesh {}: its vertices lie {:.2g} of its sizes from their origin, where single precision leaves "
-            "steps "
-            "of {:.1g} of its size; give positions about the mesh and move it by its node",
-            m, distance / extent, distance / extent * double(std::numeric_limits<float>::epsilon()));
+        farMeshes.add([&] {
+            return fmt::format(
+                "mesh {}: its vertices lie {:.2g} of its sizes from their origin, where single precision "
+                "leaves "
+                "steps of {:.1g} of its size; give positions about the mesh and move it by its node",
+                m, distance / extent, distance / extent * double(std::numeric_limits<float>::epsilon()));
+        });
     }
-    if (further > 0) first += fmt::format(" ({} further meshes likewise)", further);
-    if (!first.empty()) warnings.push_back(std::move(first));
+    farMeshes.addTo(warnings, "meshes");
 }
 
 }  // namespace helio
