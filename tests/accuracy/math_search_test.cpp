@@ -63,7 +63,7 @@ void storeMatrix(double* out, const Matrix& m) {
             __VA_ARGS__;                   \
         }
 
-/** Bounds are what searches of a minute found, and some more. Large ones are of what is ill-conditioned in
+/** Bounds are what searches of 2 to 8 seconds found, and some more. Large ones are of what is ill-conditioned in
  * the inputs: powers and exponentials of narrow lobes, and facets seen along the horizon. */
 const std::vector<Searched>& searched() {
     constexpr Range any{-1e18f, 1e18f}, unit{-1, 1}, share{0, 1}, evenShare{0, 0.99999994f, true},
