@@ -112,13 +112,17 @@ float gltfDiffuseShare(GltfSurface s, float f, float woZ, float wiZ) {
     return clamp(1.0 - max(f, bound), 0.0, 1.0);
 }
 
-/** Chances of the lobes, sum 1: by their albedos as far as wo tells. */
+/** Chances of the lobes, sum 1: by their albedos as far as wo tells. None is 0 where the lobe is not: facets of a
+ * rough surface lean, and reflect where the surface as a whole would not (black metal seen from straight above) or let
+ * through what it would reflect wholly (glass from inside beyond the critical angle). */
 struct GltfLobes {
     float specular, diffuse, transmission, coat, sheen;
 };
 GltfLobes gltfLobes(GltfSurface s, vec3 wo) {
-    const GltfFresnel f = gltfFresnel(s, wo.z);
-    const float through = 1.0 - maxComponent(f.dielectric);
+    const float width = gltfSmooth(s.alpha) ? 0.0 : max(s.alpha.x, s.alpha.y);
+    const GltfFresnel f = gltfFresnel(s, wo.z / (1.0 + width * width));
+    float through = 1.0 - maxComponent(f.dielectric);
+    if (HAS_TRANSMISSION && gltfInside(s)) through = mix(through, 1.0 - maxComponent(s.f0), width);
     const float base = HAS_DIELECTRIC ? (1.0 - s.metallic) * maxComponent(s.baseColor) : 0.0;
     GltfLobes lobes;
     lobes.specular = maxComponent(gltfMirrored(s, f));

@@ -55,6 +55,10 @@ TEST_P(EveryLobe, IsFinitePositiveAndReciprocal) {
         ASSERT_TRUE(finite(v) && std::isfinite(v.w) && v.x >= 0 && v.y >= 0 && v.z >= 0 && v.w >= 0)
             << model.cases[i / perCase].name << " value " << v.x << " " << v.y << " " << v.z << " density "
             << v.w << " wo.z " << wo[i].z << " wi.z " << wi[i].z;
+        // What sampling never finds would be missing in a picture: the density covers the value.
+        ASSERT_TRUE(v.w > 0 || std::max({v.x, v.y, v.z}) < 1e-20f)
+            << model.cases[i / perCase].name << " value " << v.x << " " << v.y << " " << v.z
+            << " without density; wo.z " << wo[i].z << " wi.z " << wi[i].z;
     }
     if (!model.reciprocal) return;
     // A ray the other way sees the interface from the other side: both directions are turned over and the
