@@ -1,3 +1,5 @@
+#include "engine/scene/normals.hpp"
+
 #include <heliograph/error.hpp>
 #include <heliograph/surfaces.hpp>
 
@@ -64,32 +66,38 @@ glm::vec3 normalOf(const Sum& sum) {
 
 }  // namespace
 
+void smoothNormals(std::span<Primitive* const> primitives, NormalWeight weight, const std::string& file,
+                   std::size_t mesh) {
+    Sums sums;
+    for (const Primitive* primitive : primitives)
+        for (std::size_t t = 0; t + 2 < primitive->indices.size(); t += 3) {
+            std::array<glm::vec3, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t index = primitive->indices[t + k];
+                if (index >= primitive->positions.size())
+                    throw InputError(file, fmt::format("mesh {}", mesh),
+                                     fmt::format("vertex {} does not exist", index),
+                                     fmt::format("there are {}", primitive->positions.size()));
+                corners[k] = primitive->positions[index];
+            }
+            addTriangle(corners, weight, sums);
+        }
+    for (Primitive* primitive : primitives) {
+        primitive->normals.clear();
+        primitive->normals.reserve(primitive->positions.size());
+        for (const glm::vec3& position : primitive->positions) {
+            const auto found = sums.find(Place(position));
+            primitive->normals.push_back(normalOf(found == sums.end() ? Sum() : found->second));
+        }
+        for (MorphTarget& target : primitive->targets) target.normals.clear();
+    }
+}
+
 void smoothNormals(Scene& scene, NormalWeight weight) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        Mesh& mesh = scene.meshes[m];
-        Sums sums;
-        for (const Primitive& primitive : mesh.primitives)
-            for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
-                std::array<glm::vec3, 3> corners;
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::uint32_t index = primitive.indices[t + k];
-                    if (index >= primitive.positions.size())
-                        throw InputError(scene.name, fmt::format("mesh {}", m),
-                                         fmt::format("vertex {} does not exist", index),
-                                         fmt::format("there are {}", primitive.positions.size()));
-                    corners[k] = primitive.positions[index];
-                }
-                addTriangle(corners, weight, sums);
-            }
-        for (Primitive& primitive : mesh.primitives) {
-            primitive.normals.clear();
-            primitive.normals.reserve(primitive.positions.size());
-            for (const glm::vec3& position : primitive.positions) {
-                const auto found = sums.find(Place(position));
-                primitive.normals.push_back(normalOf(found == sums.end() ? Sum() : found->second));
-            }
-            for (MorphTarget& target : primitive.targets) target.normals.clear();
-        }
+        std::vector<Primitive*> all;
+        for (Primitive& primitive : scene.meshes[m].primitives) all.push_back(&primitive);
+        smoothNormals(all, weight, scene.name, m);
     }
 }
 

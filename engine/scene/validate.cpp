@@ -145,12 +145,21 @@ private:
         use(place, "baseColorTexture", material.baseColorTexture);
         use(place, "metallicRoughnessTexture", material.metallicRoughnessTexture);
         use(place, "normalTexture", material.normalTexture);
+        number(place, "heightScale", material.heightScale, -largest, largest);
+        use(place, "heightTexture", material.heightTexture);
         use(place, "occlusionTexture", material.occlusionTexture);
         use(place, "emissiveTexture", material.emissiveTexture);
         use(place, "specularTexture", material.specularTexture);
         use(place, "specularColorTexture", material.specularColorTexture);
         checkVolume(material, place);
         checkCoats(material, place);
+        if (material.solid) {
+            for (int c = 0; c < 3; ++c) {
+                unit(place, "solid.first", material.solid->first[c]);
+                unit(place, "solid.second", material.solid->second[c]);
+            }
+            number(place, "solid.scale", material.solid->scale, -largest, largest);
+        }
         if (material.scattering) checkScattering(*material.scattering, place);
     }
 

@@ -8,7 +8,11 @@
 /** Dimensions of the sampler that one scattering takes: point on a light, direction, (light, roulette). */
 const uint DIMENSIONS_PER_SCATTERING = 3u;
 /** Turns of loops that a scattering may take. */
+#ifdef SOLID_TEXTURES
+const uint LOOP_TURNS = 6u;  // NOISE_OCTAVES
+#else
 const uint LOOP_TURNS = 0u;
+#endif
 
 struct SurfaceBsdf {
     vec3 albedo;

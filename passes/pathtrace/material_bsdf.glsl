@@ -17,7 +17,12 @@
 const uint DIMENSIONS_PER_SCATTERING = 4u;
 /** Turns of loops that a scattering may take: Beckmann's slopes are found by iteration,
  * and values are summed in one. */
-const uint LOOP_TURNS = HAS_MODELS ? 40u : 5u;
+#ifdef SOLID_TEXTURES
+const uint NOISE_TURNS = 6u;  // NOISE_OCTAVES
+#else
+const uint NOISE_TURNS = 0u;
+#endif
+const uint LOOP_TURNS = (HAS_MODELS ? 40u : 5u) + NOISE_TURNS;
 const float LEAST_COSINE = 0.01;
 
 struct SurfaceBsdf {
@@ -76,7 +81,7 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
     const vec3 wo = -direction;
     const vec3 color = baseColor(material, g, s.b).rgb;
     vec4 uv = vec4(0.0);
-    if ((MATERIAL_FEATURES & 0xff00u) != 0u) uv = texcoords(g, s.b);
+    if ((MATERIAL_FEATURES & 0x0800ff00u) != 0u) uv = texcoords(g, s.b);
     SurfaceBsdf bsdf;
     const uint flags = materialFlags(material);
     bsdf.unlit = HAS_UNLIT && (flags & MATERIAL_UNLIT) != 0u;
@@ -87,6 +92,10 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
     mat3 frame = tangentFrame(g, s.b, s.shading * side);
     vec3 normal = s.shading;
     if (HAS_NORMAL_MAPS) normal = side * (frame * mappedNormal(material, 16, uv, materialRow(material, 8).w));
+    if (HAS_BUMPS) {
+        const Triangle t = s.triangle;
+        normal = side * bumpedNormal(material, g, s.b, uv, side * normal, t.v1 - t.v0, t.v2 - t.v0);
+    }
     normal = bentTowards(normal, wo);
 
     if (HAS_GLTF) {

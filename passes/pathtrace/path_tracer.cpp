@@ -90,6 +90,7 @@ struct PathTracer::Impl {
         defines.insert(materialDefines_.begin(), materialDefines_.end());
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
+        if (scene_.info().solidTextures) defines["SOLID_TEXTURES"] = "1";
         if (table_) defines["CAMERA_TABLE"] = "1";
         if (scene_.info().motionKeys > 0) defines["MOTION_KEYS"] = std::to_string(scene_.info().motionKeys);
         if (generated_.empty() && defines.empty()) return built;
@@ -99,6 +100,7 @@ struct PathTracer::Impl {
     std::vector<std::string_view> surfaceBuffers() const {
         std::vector<std::string_view> names = kSurfaceBuffers;
         if (!materialDefines_.empty()) names.push_back("uTangents");
+        if (scene_.info().solidTextures) names.push_back("uSolidPoints");
         if (scene_.info().motionKeys > 0) {
             std::erase(names, "uNormals");
             names.insert(names.end(), {"uTriangleKeys", "uNormalKeys"});

@@ -20,9 +20,10 @@ void refuse(bool refused, const char* fault, const char* remedy) {
 void check(const PackedScene& packed) {
     refuse(packed.materialFeatures != 0, "the scene has materials that are not Lambertian",
            "give them metallic 0 and a specular factor of 0, or render by paths");
-    refuse(packed.baseColorTextures || packed.texturedEmission || !packed.colors.empty(),
-           "the scene has textures or vertex colours, and a patch has one colour",
-           "take them away, or render by paths");
+    refuse(
+        packed.baseColorTextures || packed.solidTextures || packed.texturedEmission || !packed.colors.empty(),
+        "the scene has textures or vertex colours, and a patch has one colour",
+        "take them away, or render by paths");
     refuse(packed.punctualLights, "the scene has punctual lights, and patches are lit by each other",
            "use emissive surfaces, or render by paths");
     refuse(packed.environmentSize[0] > 0, "the environment is an image",

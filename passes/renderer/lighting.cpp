@@ -36,6 +36,8 @@ Scene whiteScene(const Scene& scene) {
         plain.specular = 0.0f;
         plain.normalTexture = material.normalTexture;
         plain.normalScale = material.normalScale;
+        plain.heightTexture = material.heightTexture;
+        plain.heightScale = material.heightScale;
         material = plain;
     }
     // What has no material would be glTF's default, a metal.

@@ -75,26 +75,34 @@ void add(Fingerprint& f, const std::optional<Scattering>& scattering) {
     addAll(f, model, roughness, alpha, beckmann, schlick, n, k, exponent, multipleScattering);
 }
 
+void add(Fingerprint& f, const std::optional<SolidTexture>& solid) {
+    f.value(solid.has_value());
+    if (!solid) return;
+    const auto& [pattern, first, second, scale] = *solid;
+    addAll(f, pattern, first, second, scale);
+}
+
 void add(Fingerprint& f, const Material& m) {
     const auto& [name, baseColor, baseColorTexture, metallic, roughness, metallicRoughnessTexture,
-                 normalTexture, normalScale, occlusionTexture, occlusionStrength, emission, emissiveTexture,
-                 specular, specularTexture, specularColor, specularColorTexture, ior, transmission,
-                 transmissionTexture, thickness, thicknessTexture, attenuationDistance, attenuationColor,
-                 clearcoat, clearcoatTexture, clearcoatRoughness, clearcoatRoughnessTexture,
+                 normalTexture, normalScale, heightTexture, heightScale, occlusionTexture, occlusionStrength,
+                 emission, emissiveTexture, specular, specularTexture, specularColor, specularColorTexture,
+                 ior, transmission, transmissionTexture, thickness, thicknessTexture, attenuationDistance,
+                 attenuationColor, clearcoat, clearcoatTexture, clearcoatRoughness, clearcoatRoughnessTexture,
                  clearcoatNormalTexture, clearcoatNormalScale, sheenColor, sheenColorTexture, sheenRoughness,
                  sheenRoughnessTexture, anisotropyStrength, anisotropyRotation, anisotropyTexture,
                  iridescence, iridescenceTexture, iridescenceIor, iridescenceThicknessMinimum,
                  iridescenceThicknessMaximum, iridescenceThicknessTexture, dispersion, alphaMode, alphaCutoff,
-                 doubleSided, unlit, scattering, unsupported] = m;
+                 doubleSided, unlit, scattering, solid, unsupported] = m;
     addAll(f, baseColor, baseColorTexture, metallic, roughness, metallicRoughnessTexture, normalTexture,
-           normalScale, occlusionTexture, occlusionStrength, emission, emissiveTexture, specular,
-           specularTexture, specularColor, specularColorTexture, ior, transmission, transmissionTexture,
-           thickness, thicknessTexture, attenuationDistance, attenuationColor, clearcoat, clearcoatTexture,
-           clearcoatRoughness, clearcoatRoughnessTexture, clearcoatNormalTexture, clearcoatNormalScale,
-           sheenColor, sheenColorTexture, sheenRoughness, sheenRoughnessTexture, anisotropyStrength,
-           anisotropyRotation, anisotropyTexture, iridescence, iridescenceTexture, iridescenceIor,
-           iridescenceThicknessMinimum, iridescenceThicknessMaximum, iridescenceThicknessTexture, dispersion,
-           alphaMode, alphaCutoff, doubleSided, unlit, scattering, unsupported);
+           normalScale, heightTexture, heightScale, occlusionTexture, occlusionStrength, emission,
+           emissiveTexture, specular, specularTexture, specularColor, specularColorTexture, ior, transmission,
+           transmissionTexture, thickness, thicknessTexture, attenuationDistance, attenuationColor, clearcoat,
+           clearcoatTexture, clearcoatRoughness, clearcoatRoughnessTexture, clearcoatNormalTexture,
+           clearcoatNormalScale, sheenColor, sheenColorTexture, sheenRoughness, sheenRoughnessTexture,
+           anisotropyStrength, anisotropyRotation, anisotropyTexture, iridescence, iridescenceTexture,
+           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum,
+           iridescenceThicknessTexture, dispersion, alphaMode, alphaCutoff, doubleSided, unlit, scattering,
+           solid, unsupported);
 }
 
 /** Of a mesh as it stands: variants and deformations are chosen before. */

@@ -22,7 +22,8 @@ const RegisterFeature transmission{
 const RegisterFeature layers{rule("materials.layers", "no clear coat, sheen or thin film is shaded",
                                   pack::kClearcoatFeature | pack::kSheenFeature | pack::kIridescenceFeature)};
 const RegisterFeature normalMaps{
-    rule("materials.normalMaps", "normals are those of the vertices", pack::kNormalMapFeature)};
+    rule("materials.normalMaps", "normals are those of the vertices",
+         pack::kNormalMapFeature | pack::kBumpFeature)};
 const RegisterFeature alpha{rule("materials.alpha", "every surface stops light", pack::kAlphaFeature)};
 const RegisterFeature models{rule("materials.models", "surfaces scatter as glTF says", pack::kModelFeatures)};
 

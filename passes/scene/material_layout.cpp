@@ -21,7 +21,8 @@ enum Row : std::uint32_t {
     kSheenRoughnessRow = 32,
     kAnisotropyRow = 34,
     kIridescenceRow = 36,
-    kIridescenceThicknessRow = 38
+    kIridescenceThicknessRow = 38,
+    kHeightRow = 43
 };
 
 /** SMOOTH_ALPHA of shaders/scattering/scatter.glsl: a narrower lobe is a mirror's. */
@@ -77,6 +78,7 @@ std::uint32_t materialFeatures(const Material& m) {
     else
         bits |= gltfFeatures(m);
     if (m.normalTexture && !m.unlit) bits |= kNormalMapFeature;
+    if (m.heightTexture && m.heightScale != 0.0f && !m.unlit) bits |= kBumpFeature;
     if (m.alphaMode != AlphaMode::Opaque) bits |= kAlphaFeature;
     return bits == kDiffuseFeatures ? 0u : bits;
 }
@@ -121,6 +123,7 @@ std::vector<SampledTexture> sampledTextures(const Material& m) {
     add(m.emissiveTexture, kEmissiveRow, true, m.emission != glm::vec3(0.0f));
     add(m.metallicRoughnessTexture, kMetallicRoughnessRow, false, bits & kMetallicTextureFeature);
     add(m.normalTexture, kNormalRow, false, bits & kNormalMapFeature);
+    add(m.heightTexture, kHeightRow, false, bits & kBumpFeature);
     add(m.specularTexture, kSpecularRow, false, bits & kSpecularTextureFeature);
     add(m.specularColorTexture, kSpecularColorRow, true, bits & kSpecularTextureFeature);
     add(m.transmissionTexture, kTransmissionRow, false, bits & kTransmissionTextureFeature);
@@ -159,13 +162,13 @@ bool namesTooManySets(const Material& material) {
 bool needsTangents(const Material& material) {
     const std::uint32_t bits = materialFeatures(material);
     const bool turned = material.scattering && material.scattering->alpha.x != material.scattering->alpha.y;
-    return (bits & (kNormalMapFeature | kAnisotropyFeature)) != 0 || turned ||
+    return (bits & (kNormalMapFeature | kBumpFeature | kAnisotropyFeature)) != 0 || turned ||
            ((bits & kClearcoatTextureFeature) != 0 && material.clearcoatNormalTexture);
 }
 
 int tangentSet(const Material& material) {
-    for (const TextureUse* use :
-         {&material.normalTexture, &material.anisotropyTexture, &material.clearcoatNormalTexture})
+    for (const TextureUse* use : {&material.normalTexture, &material.anisotropyTexture,
+                                  &material.clearcoatNormalTexture, &material.heightTexture})
         if (*use) return use->texcoord;
     return 0;
 }

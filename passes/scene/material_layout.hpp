@@ -36,9 +36,10 @@ enum MaterialFeature : std::uint32_t {
     kSpecularFeature = 1u << 18,    ///< some glTF material is more than diffuse
     kMultipleFeature = 1u << 19,    ///< light between facets is made up for
     kFirstModelFeature = 1u << 20,  ///< and one bit for each Scattering::Model in order
+    kBumpFeature = 1u << 27,        ///< some normal is tilted by a height map
     kDielectricFeature = 1u << 31   ///< some glTF material is no pure metal
 };
-inline constexpr std::uint32_t kModelFeatures = kDielectricFeature - kFirstModelFeature;
+inline constexpr std::uint32_t kModelFeatures = kBumpFeature - kFirstModelFeature;
 
 /** What a material that scatters as Lambert needs beside others that are more. */
 inline constexpr std::uint32_t kDiffuseFeatures = kGltfFeature | kDielectricFeature;

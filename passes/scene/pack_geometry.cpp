@@ -41,6 +41,22 @@ glm::dmat3 normalMatrix(const glm::dmat3& m) {
     return glm::determinant(m) < 0.0 ? -cofactor : cofactor;
 }
 
+/** The permutation that Perlin published with "Improving noise", 2002. */
+constexpr std::array<std::uint8_t, 256> kNoisePermutation = {
+    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,
+    69,  142, 8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,
+    94,  252, 219, 203, 117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136,
+    171, 168, 68,  175, 74,  165, 71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122,
+    60,  211, 133, 230, 220, 105, 92,  41,  55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161,
+    1,   216, 80,  73,  209, 76,  132, 187, 208, 89,  18,  169, 200, 196, 135, 130, 116, 188, 159, 86,
+    164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250, 124, 123, 5,   202, 38,  147, 118, 126,
+    255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189, 28,  42,  223, 183, 170, 213,
+    119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,   129, 22,  39,  253,
+    19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,  242, 193,
+    238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
+    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,
+    222, 114, 67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
+
 glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
     const double length = glm::length(v);
     if (length > 0.0 && std::isfinite(length)) return glm::vec3(v / length);
@@ -80,6 +96,9 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
     const bool anyTangents = anyPrimitive(
         scene, instances, [&](const Primitive& p) { return needsTangents(materialOf(scene, p)); });
 
+    packed.solidTextures = anyPrimitive(
+        scene, instances, [&](const Primitive& p) { return materialOf(scene, p).solid.has_value(); });
+
     std::vector<glm::vec3> positions;
     positions.reserve(total * 3);
     surfaces.reserve(total);
@@ -87,6 +106,11 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
     if (anyColors) packed.colors.reserve(total * 3);
     if (anyTexcoords) packed.texcoords.reserve(total * 3);
     if (anyTangents) packed.tangents.reserve(total * 3);
+    if (packed.solidTextures) {
+        packed.solidPoints.reserve(256 + total * 3);
+        for (std::size_t i = 0; i < 256; ++i)
+            packed.solidPoints.emplace_back(kNoisePermutation[i], kNoisePermutation[(i + 1) % 256], 0, 0);
+    }
 
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const Instance& instance = instances[i];
@@ -95,6 +119,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
         const glm::dmat3 linear(transform);
         const glm::dmat3 forNormals = normalMatrix(linear);
         const bool mirrored = glm::determinant(linear) < 0.0;
+        const float scale = float(std::cbrt(std::abs(glm::determinant(linear))));
         const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
             const Primitive& primitive = mesh.primitives[p];
@@ -150,8 +175,11 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
                         // Tangents lie in the surface: the transform itself carries them. A mirror turns the
                         // bitangent over.
                         packed.tangents.emplace_back(unitOr(linear * glm::dvec3(local), glm::dvec3(1, 0, 0)),
-                                                     mirrored ? -local.w : local.w);
+                                                     std::copysign(scale, mirrored ? -local.w : local.w));
                     }
+                if (packed.solidTextures)
+                    for (std::uint32_t k : index)
+                        packed.solidPoints.emplace_back(primitive.positions[k], 0.0f);
                 if (anyColors)
                     for (std::uint32_t k : index)
                         packed.colors.push_back(primitive.colors.empty() ? glm::vec4(1.0f)

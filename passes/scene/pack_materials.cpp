@@ -203,7 +203,7 @@ glm::vec3 absorption(const Material& m) {
 void addParameters(const Material& m, Rows& rows) {
     rows[7] = {m.specularColor, m.specular};
     rows[8] = {m.ior, m.transmission, m.dispersion, m.normalScale};
-    rows[9] = {absorption(m), 0.0f};
+    rows[9] = {absorption(m), m.heightScale};
     rows[10] = {m.clearcoat, m.clearcoatRoughness, m.clearcoatNormalScale, m.anisotropyStrength};
     rows[11] = {m.sheenColor, m.sheenRoughness};
     rows[12] = {std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation), m.iridescence,
@@ -211,6 +211,10 @@ void addParameters(const Material& m, Rows& rows) {
     // Without a texture the film's thickness is the largest.
     rows[13] = {m.iridescenceThicknessTexture ? m.iridescenceThicknessMinimum : m.iridescenceThicknessMaximum,
                 m.iridescenceThicknessMaximum, 0.0f, 0.0f};
+    if (m.solid) {
+        rows[45] = {m.solid->first, glm::uintBitsToFloat(std::uint32_t(m.solid->pattern) + 1u)};
+        rows[46] = {m.solid->second, m.solid->scale};
+    }
     if (m.scattering) {
         const Scattering& s = *m.scattering;
         rows[40] = {s.n, s.roughness};
@@ -253,10 +257,12 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         addParameters(material, rows);
         for (std::size_t row = 3; row < 40; row = row == 5 ? 14 : row + 2)
             rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
+        rows[43].w = glm::uintBitsToFloat(std::uint32_t(-1));
         if (materialUsed[i]) {
             const std::uint32_t features = materialFeatures(material);
             packed.roughFacets |= hasRoughFacets(material);
-            packed.tiltedLobes |= material.normalTexture && hasWideLobes(material);
+            packed.tiltedLobes |=
+                (features & (kNormalMapFeature | kBumpFeature)) != 0 && hasWideLobes(material);
             packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
             const std::array<int, 2> sets = texcoordSets(material);
             for (const SampledTexture& texture : sampledTextures(material)) {

@@ -136,6 +136,7 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, cons
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(triangleKeys) + bytesOf(normalKeys) + bytesOf(instanceFirst) +
            bytesOf(nodes) + bytesOf(normals) + bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) +
+           bytesOf(solidPoints) +
            bytesOf(materials) + bytesOf(lights) + bytesOf(textures) + bytesOf(texels8) +
            bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) + bytesOf(lightCells) +
            bytesOf(lightRanges) + bytesOf(lightOfTriangle);

@@ -22,7 +22,7 @@
 namespace helio {
 
 /** Texels per material in PackedScene::materials; shaders/scene/materials.glsl names them. */
-inline constexpr std::uint32_t kMaterialTexels = 43;
+inline constexpr std::uint32_t kMaterialTexels = 47;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
 
@@ -81,8 +81,12 @@ struct PackedScene {
     /** 3 texels a g: u, v in the first set that the material's textures name, then in the second; 0 where the
      * primitive has no such set. Empty where no material in use samples a texture. */
     std::vector<glm::vec4> texcoords;
-    /** 3 texels a g: unit world-space tangent, sign of the bitangent. Empty where no material needs them. */
+    /** 3 texels a g: unit world-space tangent, sign of the bitangent times the instance's scale (the cube
+     * root of a unit cube's volume). Empty where no material needs them. */
     std::vector<glm::vec4> tangents;
+    /** 256 texels with the permutation of Perlin's noise at i and i + 1; then 3 a g: the corner's place in
+     * its mesh. Empty where no material in use has a solid texture. */
+    std::vector<glm::vec4> solidPoints;
     /** 3 texels a g: linear colour. Empty where no mesh has colours. */
     std::vector<glm::vec4> colors;
     /** kMaterialTexels each; the last is glTF's default material. Then the tables of albedos, where needed.
@@ -132,6 +136,7 @@ struct PackedScene {
     bool emission = false;          ///< some surface in use emits
     bool texturedEmission = false;  ///< emission varies over some surface in use
     bool baseColorTextures = false;
+    bool solidTextures = false;          ///< some base colour varies over space
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
     std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
     bool roughFacets = false;            ///< some material in use has microfacets of a width

@@ -99,7 +99,7 @@ struct ShadePipeline::Common {
     std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
     bool hasImage = false;
     std::map<std::string, std::string> materials;  ///< definitions for more than diffuse surfaces
-    std::map<std::string, std::string> model;      ///< definitions for Blinn and Phong's model
+    std::map<std::string, std::string> model;      ///< other definitions: Blinn and Phong's model, solid textures
     std::uint32_t firstLight = 0;                  ///< of those that are taken one by one
     std::vector<Binding> drawnLights;              ///< where lights are drawn
     std::vector<Binding> corners;                  ///< where light is found for corners
@@ -198,6 +198,7 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
     common.firstSpec.merge(scene_.environmentConstants());
     common.hasImage = scene_.hasEnvironmentImage();
     if (common.hasImage) common.surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
+    if (scene_.info().solidTextures) common.model["SOLID_TEXTURES"] = "1";
     if (shading_ != Shading::Material) common.model["BLINN_PHONG"] = "1";
     declareCorners(graph, std::move(view), common);
     return common;
@@ -211,6 +212,7 @@ void ShadePipeline::bindScene(Graph& graph, Pass& pass, const Common& common) {
         .reads({{"uSlots", common.slots, Format::R32UI}})
         .reads(common.corners);
     if (!common.materials.empty()) pass.reads(scene_.bindings(graph, {"uTangents"}));
+    if (scene_.info().solidTextures) pass.reads(scene_.bindings(graph, {"uSolidPoints"}));
 }
 
 ShadeOutput ShadePipeline::declare(Graph& graph, const RasterOutput& raster,

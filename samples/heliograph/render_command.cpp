@@ -36,6 +36,7 @@ struct RenderArguments {
     std::string shutter;
     Display display;
     Normals normals = Normals::File;
+    std::uint32_t displacement = 0;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
     RenderOptions options;
@@ -339,6 +340,7 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     if (!loaded || interrupted()) return reportNothingWritten();
     Scene& scene = *loaded;
     chooseNormals(scene, arguments.normals);
+    if (arguments.displacement > 0) displace(scene, arguments.displacement);
     if (image) {
         options.environment = Environment{.radiance = glm::vec3(1.0f), .image = int(scene.images.size())};
         scene.images.push_back(loadTextureImage(arguments.environment));
@@ -542,6 +544,12 @@ void addRenderCommand(CLI::App& app, Command& run) {
                         {"angle", Normals::Angle}},
                        "file (default): the scene's own; flat: none; or the mean of those of the triangles "
                        "around, equal, by area or by angle");
+    command
+        ->add_option(
+            "--displace", arguments->displacement,
+            "Cut each triangle that has a map of heights into N x N and move the corners by it; without "
+            "this the map tilts normals")
+        ->check(CLI::Range(1u, 1024u));
     command
         ->add_option("--light-samples", options.lightSamples,
                      "Emissive surfaces that a pixel of the raster pipeline draws where there are over 16 "

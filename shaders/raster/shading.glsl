@@ -95,6 +95,9 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     vec4 base = uintBitsToFloat(texelFetch(uMaterials, source.material * MATERIAL_TEXELS));
     if (HAS_COLORS) base *= vertexColor(g, surface.b);
     if (HAS_BASE_TEXTURES) base *= filteredMaterialTexture(source.material, 3, uv, dx, dy);
+#ifdef SOLID_TEXTURES
+    base.rgb *= solidColor(source.material, g, surface.b, vec4(surface.db1, surface.db2));
+#endif
     shaded.emission = vec3(0.0);
     if (HAS_EMISSION) {
         uvec4 row = texelFetch(uMaterials, source.material * MATERIAL_TEXELS + 1);
@@ -126,7 +129,7 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     shaded.diffuse = model.diffuse;
     shaded.mirror = model.specular;
     shaded.exponent = model.exponent;
-    if (HAS_NORMAL_MAPS) shaded.normal = shaded.bsdf.frame[2];
+    if (HAS_NORMAL_MAPS || HAS_BUMPS) shaded.normal = shaded.bsdf.frame[2];
 #endif
 #if defined(CORNERS) && CORNERS == 1
     shaded.normal = surface.front ? surface.faceNormal : -surface.faceNormal;

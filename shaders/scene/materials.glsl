@@ -1,6 +1,6 @@
 #ifndef HELIOGRAPH_SCENE_MATERIALS
 #define HELIOGRAPH_SCENE_MATERIALS
-/** @file Materials: 43 texels each (kMaterialTexels). Base colour and emission are read here, the rest, where the
+/** @file Materials: 47 texels each (kMaterialTexels). Base colour and emission are read here, the rest, where the
  * scene has more than diffuse surfaces, in shaders/scene/surface_material.glsl. */
 #include "shaders/scene/attributes.glsl"
 #include "shaders/scene/features.glsl"
@@ -12,9 +12,10 @@
  * 2: light sampling density per area (1/m^2), metallic, roughness, alpha cutoff
  * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of slot of texture coordinates
  * 5, 6: the same of the emissive texture
+ * 45: first colour of the solid texture, bits of its pattern (0: none); 46: second colour, features a unit
  */
 layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;
-const int MATERIAL_TEXELS = 43;
+const int MATERIAL_TEXELS = 47;
 const uint MATERIAL_DOUBLE_SIDED = 1u << 0;
 const uint MATERIAL_MASK = 1u << 1;           ///< opaque where alpha is at least the cutoff
 const uint MATERIAL_BLEND = 1u << 2;          ///< opaque with the chance alpha
@@ -37,10 +38,36 @@ vec4 materialTexture(int material, int row, vec4 uv) {
     return value;
 }
 
+#ifdef SOLID_TEXTURES
+/** 256 texels: the noise's permutation at i, at i + 1; then corners' places in their mesh, 3 texels a triangle. */
+layout(set = 0, binding = 49) uniform samplerBuffer uSolidPoints;
+const int SOLID_HEADER = 256;
+#define NOISE_PAIR(i) ivec2(texelFetch(uSolidPoints, i).xy)
+#include "shaders/texture/noise.glsl"
+
+/** Colour of a material's solid texture, white where it has none. `derivatives` of the second and the third barycentric,
+ * each along x and y, over a pixel; 0 where samples are points. */
+vec3 solidColor(int material, int g, vec3 b, vec4 derivatives) {
+    const uvec4 first = texelFetch(uMaterials, material * MATERIAL_TEXELS + 45);
+    const vec4 second = uintBitsToFloat(texelFetch(uMaterials, material * MATERIAL_TEXELS + 46));
+    if (first.w == 0u) return vec3(1.0);
+    const int at = SOLID_HEADER + g * 3;
+    const vec3 p0 = texelFetch(uSolidPoints, at).xyz, e1 = texelFetch(uSolidPoints, at + 1).xyz - p0,
+               e2 = texelFetch(uSolidPoints, at + 2).xyz - p0;
+    const vec3 dx = derivatives.x * e1 + derivatives.z * e2, dy = derivatives.y * e1 + derivatives.w * e2;
+    const float width = abs(second.w) * sqrt(max(dot(dx, dx), dot(dy, dy)));
+    const vec3 p = second.w * (p0 + b.y * e1 + b.z * e2);
+    return mix(uintBitsToFloat(first.xyz), second.rgb, solidPattern(int(first.w), p, width));
+}
+#endif
+
 /** Linear base colour: factor times texture times vertex colour. `b`: barycentrics in triangle g. */
 vec4 baseColor(int material, int g, vec3 b) {
     vec4 color = uintBitsToFloat(texelFetch(uMaterials, material * MATERIAL_TEXELS)) * vertexColor(g, b);
     if (HAS_BASE_TEXTURES) color *= materialTexture(material, 3, texcoords(g, b));
+#ifdef SOLID_TEXTURES
+    color.rgb *= solidColor(material, g, b, vec4(0.0));
+#endif
     return color;
 }
 

@@ -6,7 +6,7 @@
  *
  * 7: specular colour, specular
  * 8: index, transmission, dispersion, scale of the normal map
- * 9: absorption of the volume behind the front face RGB (1/m), 0
+ * 9: absorption of the volume behind the front face RGB (1/m), scale of the height map
  * 10: clearcoat, its roughness, scale of its normal map, anisotropy
  * 11: sheen colour, sheen roughness
  * 12: cosine and sine of the anisotropy's rotation, iridescence, index of its film
@@ -15,13 +15,14 @@
  *   colour, transmission, clearcoat, clearcoat roughness, clearcoat normal, sheen colour, sheen roughness,
  *   anisotropy, iridescence, iridescence thickness
  * 40: Scattering: n, roughness; 41: k, exponent; 42: alpha, first texel of its table of losses, 0
+ * 43, 44: texture of heights
  *
  * Behind the materials lie tables: of sheen's albedo (passes/scene/albedo_tables.hpp), then of what facets lose
  * (passes/scene/facet_losses.hpp).
  */
 #include "shaders/scene/materials.glsl"
 
-layout(set = 0, binding = 37) uniform samplerBuffer uTangents;  ///< 3 texels a triangle: unit tangent, bitangent's sign
+layout(set = 0, binding = 37) uniform samplerBuffer uTangents;  ///< 3 texels a triangle: unit tangent, bitangent's sign times the instance's scale
 
 /** Bits of passes/scene/material_layout.hpp: what the materials in use need. A definition, since whole bodies of code
  * go by it. */
@@ -55,9 +56,11 @@ const bool HAS_SPECULAR = (MATERIAL_FEATURES & (1u << 18)) != 0u;
 const bool HAS_DIELECTRIC = (MATERIAL_FEATURES & (1u << 31)) != 0u;
 const bool HAS_COMPENSATION = (MATERIAL_FEATURES & (1u << 19)) != 0u;
 const uint FIRST_MODEL_FEATURE = 20u;
-const bool HAS_MODELS = ((MATERIAL_FEATURES & 0x7fffffffu) >> FIRST_MODEL_FEATURE) != 0u;
+const bool HAS_MODELS = ((MATERIAL_FEATURES & 0x07ffffffu) >> FIRST_MODEL_FEATURE) != 0u;
+/** Some height map tilts normals. */
+const bool HAS_BUMPS = (MATERIAL_FEATURES & (1u << 27)) != 0u;
 #define HAS_MODEL(model) ((MATERIAL_FEATURES & (1u << (FIRST_MODEL_FEATURE + (model)))) != 0u)
-const bool HAS_TANGENTS = HAS_ANISOTROPY || HAS_NORMAL_MAPS || HAS_CLEARCOAT_TEXTURES || HAS_MODEL(4u) || HAS_MODEL(2u);
+const bool HAS_TANGENTS = HAS_ANISOTROPY || HAS_NORMAL_MAPS || HAS_BUMPS || HAS_CLEARCOAT_TEXTURES || HAS_MODEL(4u) || HAS_MODEL(2u);
 /** Some material's light goes through its surface. */
 const bool HAS_LIGHT_THROUGH = HAS_TRANSMISSION || HAS_MODEL(2u) || HAS_MODEL(3u);
 
@@ -107,6 +110,67 @@ vec3 mappedNormal(int material, int row, vec4 uv, float scale) {
     const vec3 n = materialTexture(material, row, uv).xyz * 2.0 - 1.0;
     const vec3 scaled = vec3(n.xy * scale, n.z);
     return int(texelFetch(uMaterials, material * MATERIAL_TEXELS + row).w) < 0 ? vec3(0.0, 0.0, 1.0) : normalizeSafe(scaled, vec3(0.0, 0.0, 1.0));
+}
+
+/** Differences of a texture's red from a texel before to a texel behind, along u and v: those at the four texels around,
+ * bilinear, so that they are exactly 0 where the map is flat. */
+vec2 heightDifferences(int texture, vec2 uv) {
+    const uvec4 header = texelFetch(uTextures, texture);
+    const ivec2 size = ivec2(header.yz);
+    const uint wrapU = header.w & 3u, wrapV = header.w >> 2 & 3u;
+    // As in sampleTexture: even repeats are taken out before scaling, which keeps the fraction's bits.
+    const vec2 position = clamp(uv, -1048576.0, 1048576.0), whole = floor(position * 0.5) * 2.0;
+    const vec2 base = vec2(wrapU == 2u ? position.x : position.x - whole.x, wrapV == 2u ? position.y : position.y - whole.y);
+    const vec2 texel = clamp(base, -4.0, 4.0) * vec2(size) - 0.5, corner = floor(texel), f = texel - corner;
+    const ivec2 i = ivec2(corner);
+    const ivec4 x = ivec4(wrapIndex(i.x - 1, size.x, wrapU), wrapIndex(i.x, size.x, wrapU), wrapIndex(i.x + 1, size.x, wrapU),
+                          wrapIndex(i.x + 2, size.x, wrapU));
+    const ivec4 y = ivec4(wrapIndex(i.y - 1, size.y, wrapV), wrapIndex(i.y, size.y, wrapV), wrapIndex(i.y + 1, size.y, wrapV),
+                          wrapIndex(i.y + 2, size.y, wrapV));
+    const float h11 = fetchTexel(header, x.y, y.y).x, h21 = fetchTexel(header, x.z, y.y).x,
+                h12 = fetchTexel(header, x.y, y.z).x, h22 = fetchTexel(header, x.z, y.z).x;
+    const vec2 across1 = vec2(h21 - fetchTexel(header, x.x, y.y).x, fetchTexel(header, x.w, y.y).x - h11);
+    const vec2 across2 = vec2(h22 - fetchTexel(header, x.x, y.z).x, fetchTexel(header, x.w, y.z).x - h12);
+    const vec2 down1 = vec2(h12 - fetchTexel(header, x.y, y.x).x, h22 - fetchTexel(header, x.z, y.x).x);
+    const vec2 down2 = vec2(fetchTexel(header, x.y, y.w).x - h11, fetchTexel(header, x.z, y.w).x - h21);
+    return vec2(mix(mix(across1.x, across1.y, f.x), mix(across2.x, across2.y, f.x), f.y),
+                mix(mix(down1.x, down1.y, f.x), mix(down2.x, down2.y, f.x), f.y));
+}
+
+/**
+ * The normal (unit, of the front side) of a surface that stands out by a height map: n - grad h, by the surface gradient
+ * of Mikkelsen, "Bump mapping unparametrized surfaces on the GPU", 2010, over the triangle's own coordinates. Slopes are
+ * heightDifferences(). `e1`, `e2`: the triangle's edges; a flat map leaves the normal's bits.
+ */
+vec3 bumpedNormal(int material, int g, vec3 b, vec4 uv, vec3 normal, vec3 e1, vec3 e2) {
+    const int at = material * MATERIAL_TEXELS + 43;
+    const uvec4 first = texelFetch(uMaterials, at), second = texelFetch(uMaterials, at + 1);
+    if (int(first.w) < 0) return normal;
+    const vec3 rowU = uintBitsToFloat(first.xyz), rowV = uintBitsToFloat(second.xyz);
+    const bool set0 = second.w == 0u;
+    const vec4 t0 = texelFetch(uTexcoords, g * 3), t1 = texelFetch(uTexcoords, g * 3 + 1) - t0,
+               t2 = texelFetch(uTexcoords, g * 3 + 2) - t0;
+    const vec2 s1 = set0 ? t1.xy : t1.zw, s2 = set0 ? t2.xy : t2.zw;
+    const vec2 d1 = vec2(dot(rowU.xy, s1), dot(rowV.xy, s1)), d2 = vec2(dot(rowU.xy, s2), dot(rowV.xy, s2));
+    const vec3 p = vec3(set0 ? uv.xy : uv.zw, 1.0);
+    const vec2 here = vec2(dot(rowU, p), dot(rowV, p));
+    const vec2 size = vec2(texelFetch(uTextures, int(first.w)).yz);
+    // Heights along the edges of the triangle, from which the gradient follows whatever the coordinates.
+    const float scale = materialRow(material, 9).w * abs(texelFetch(uTangents, g * 3).w);
+    // Nothing is steeper, whatever a file says: squares stay finite.
+    const float STEEPEST = 1e15;
+    const vec2 slope = 0.5 * scale * heightDifferences(int(first.w), here) * size;
+    // Scaled first: products of a small triangle's edges are no normal floats.
+    const vec3 largest3 = max(abs(e1), abs(e2));
+    const float largest = max(max(largest3.x, largest3.y), largest3.z);
+    const float inverse = largest > 0.0 ? 1.0 / largest : 0.0;
+    const vec3 a1 = e1 * inverse, a2 = e2 * inverse;
+    const float h1 = clamp(dot(slope, d1) * inverse, -STEEPEST, STEEPEST), h2 = clamp(dot(slope, d2) * inverse, -STEEPEST, STEEPEST);
+    const float volume = dot(normal, cross(a1, a2));
+    const vec3 tilt = (h1 * cross(a2, normal) + h2 * cross(normal, a1)) / volume;
+    const vec3 bounded = clamp(tilt, -STEEPEST, STEEPEST);
+    const bool isFlat = (h1 == 0.0 && h2 == 0.0) || !(abs(volume) > 0.0);
+    return isFlat ? normal : normalizeSafe(normal - bounded, normal);
 }
 
 /** Chance that a surface of this material stops light where its base colour has this alpha. */

@@ -101,6 +101,32 @@ TEST_F(GltfExtras, NodesHoldMeters) {
     EXPECT_THROW(withMeter({{"quantity", "colour"}}), InputError);
 }
 
+TEST_F(GltfExtras, MaterialsTakeASolidTexture) {
+    using Pattern = SolidTexture::Pattern;
+    const std::pair<const char*, Pattern> patterns[] = {{"noise", Pattern::Noise},
+                                                        {"clouds", Pattern::Clouds},
+                                                        {"marble", Pattern::Marble},
+                                                        {"wood", Pattern::Wood}};
+    std::vector<std::string> names;
+    for (const auto& [name, pattern] : patterns) {
+        GltfDocument file = GltfDocument::triangle();
+        file.doc["materials"][0]["extras"]["heliograph"]["solid"] = {
+            {"pattern", name}, {"first", {0.1, 0.2, 0.3}}, {"second", {0.4, 0.5, 0.6}}, {"scale", 7}};
+        file.doc["meshes"][0]["primitives"][0]["material"] = 0;
+        const Scene scene = load(file);
+        EXPECT_NO_THROW(scene.validate());
+        ASSERT_TRUE(scene.materials[0].solid.has_value());
+        EXPECT_EQ(scene.materials[0].solid->pattern, pattern);
+        EXPECT_EQ(scene.materials[0].solid->first, glm::vec3(0.1f, 0.2f, 0.3f));
+        EXPECT_EQ(scene.materials[0].solid->second, glm::vec3(0.4f, 0.5f, 0.6f));
+        EXPECT_EQ(scene.materials[0].solid->scale, 7);
+        names.push_back(name);
+    }
+    const json whole = schema();
+    EXPECT_EQ(whole["definitions"]["material"]["properties"]["solid"]["properties"]["pattern"]["enum"],
+              names);
+}
+
 class GltfCameraExtras : public GltfExtras {
 protected:
     Camera withCamera(const json& own, const std::string& type = "perspective") const {

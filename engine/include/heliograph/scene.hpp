@@ -81,6 +81,20 @@ struct Scattering {
     bool multipleScattering = false;
 };
 
+/** A pattern in space that a surface is cut out of, by Perlin's noise: its share between two colours, which
+ * multiplies the base colour. Coordinates are those of the mesh before it is placed, skinned or morphed. */
+struct SolidTexture {
+    enum class Pattern : std::uint8_t {
+        Noise,   ///< one feature a unit
+        Clouds,  ///< noise of six sizes
+        Marble,  ///< veins across x
+        Wood     ///< rings about y
+    };
+    Pattern pattern = Pattern::Noise;
+    glm::vec3 first{1.0f}, second{0.0f};  ///< linear colours, 0..1
+    float scale = 1.0f;                   ///< features per unit of the mesh's own space
+};
+
 /** The glTF 2.0 metallic-roughness material. Defaults are glTF's. */
 struct Material {
     std::string name;
@@ -91,6 +105,10 @@ struct Material {
     TextureUse metallicRoughnessTexture;  ///< G roughness, B metallic, linear
     TextureUse normalTexture;
     float normalScale = 1.0f;
+    /** R, linear: the surface stands out by this times heightScale, in units of the mesh's own space. Tilts
+     * normals (bump mapping) until displace() moves the surface itself. */
+    TextureUse heightTexture;
+    float heightScale = 0.0f;
     TextureUse occlusionTexture;
     float occlusionStrength = 1.0f;
     glm::vec3 emission{0.0f};    ///< radiance: emissive factor times strength
@@ -131,6 +149,7 @@ struct Material {
     bool doubleSided = false;  ///< emits from both faces
     bool unlit = false;
     std::optional<Scattering> scattering;  ///< instead of glTF's
+    std::optional<SolidTexture> solid;     ///< multiplies the base colour
     /** What the file asked for that the model cannot hold yet, e.g. "KHR_materials_sheen". */
     std::vector<std::string> unsupported;
 };

@@ -15,6 +15,14 @@ enum class NormalWeight : std::uint8_t { Equal, Area, Angle };
  * corner takes the normal of one of them. Throws InputError for an index that does not exist. */
 void smoothNormals(Scene& scene, NormalWeight weight);
 
+/** Moves surfaces whose material has a height map by it: every triangle is cut into `cuts` x `cuts`, and the
+ * new corners are moved along their normals (those of the mesh, else the mean of the triangles around by
+ * angle). Normals become those of the moved surface, and the material's heights 0, since the surface has them
+ * now. Corners that two triangles share stay shared; at a seam of the texture coordinates heights may differ
+ * and the surface open. Throws InputError for meshes that bend (morph targets and skins; posed() gives them a
+ * shape), cuts of 0 or more than 1024, and more triangles than a scene may have, 2^24. */
+void displace(Scene& scene, std::uint32_t cuts);
+
 /** Takes normals and tangents away: surfaces are shaded flat. */
 void flatNormals(Scene& scene);
 

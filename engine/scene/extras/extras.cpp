@@ -76,6 +76,22 @@ Scattering scatteringOf(const json& from) {
     return to;
 }
 
+SolidTexture solidOf(const json& from) {
+    using Pattern = SolidTexture::Pattern;
+    constexpr std::pair<const char*, Pattern> patterns[] = {{"noise", Pattern::Noise},
+                                                            {"clouds", Pattern::Clouds},
+                                                            {"marble", Pattern::Marble},
+                                                            {"wood", Pattern::Wood}};
+    SolidTexture to;
+    for (const auto& [name, pattern] : patterns) {
+        if (from["pattern"] == name) to.pattern = pattern;
+    }
+    if (from.contains("first")) to.first = channels(from["first"]);
+    if (from.contains("second")) to.second = channels(from["second"]);
+    to.scale = from.value("scale", to.scale);
+    return to;
+}
+
 /** Refuses a camera whose parts do not go together, which the schema does not say. */
 [[noreturn]] void refuseCamera(const std::string& file, int index, const std::string& member,
                                const std::string& fault, const std::string& remedy) {
@@ -158,6 +174,7 @@ void check(const std::string& file, const json& document) {
 void readMaterial(const json& object, Material& material) {
     const json* const own = extrasOf(object);
     if (own == nullptr) return;
+    if (own->contains("solid")) material.solid = solidOf((*own)["solid"]);
     if (own->contains("scattering")) material.scattering = scatteringOf((*own)["scattering"]);
 }
 

@@ -15,7 +15,7 @@
  * colour Tf, index Ni, smooth | | Pr, Pm, Ps, Pc, Pcr, aniso, anisor, norm; map_Pr, map_Pm | roughness,
  * metallic, sheen, clearcoat, anisotropy, normal map |
  *
- * Lost, and named in Scene::skipped: Ka (light from nowhere), height maps (bump, disp), decal, refl, map_Ns,
+ * Lost, and named in Scene::skipped: Ka (light from nowhere), bump without -bm, disp, decal, refl, map_Ns,
  * a map_d of its own, options of textures other than -o, -s, -clamp and -bm. A Phong lobe keeps its width and
  * its strength at normal incidence, not its shape.
  */

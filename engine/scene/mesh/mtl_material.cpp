@@ -68,6 +68,7 @@ public:
         material_.anisotropyRotation = float(double(from_.anisotropy_rotation) * 2 * std::numbers::pi);
         material_.normalTexture = use(from_.normal_texname, from_.normal_texopt);
         if (!from_.normal_texname.empty()) material_.normalScale = from_.normal_texopt.bump_multiplier;
+        setHeight();
         noteRest();
         return std::move(material_);
     }
@@ -268,18 +269,34 @@ private:
             skip(scene_, "MTL map_d", "only the alpha channel of the image that is map_Kd is read");
     }
 
+    /** Heights are known where -bm says how high white stands, in units of the scene: many files name normal
+     * maps as bump. */
+    void setHeight() {
+        if (from_.bump_texname.empty()) return;
+        const bool saysHeight =
+            std::any_of(block_.lines.begin(), block_.lines.end(), [](const MtlBlock::Line& line) {
+                return (line.keyword == "bump" || line.keyword == "map_bump" || line.keyword == "map_Bump") &&
+                       std::string_view(line.rest).find("-bm ") != std::string_view::npos;
+            });
+        if (saysHeight && std::isfinite(from_.bump_texopt.bump_multiplier)) {
+            material_.heightTexture = use(from_.bump_texname, from_.bump_texopt);
+            if (material_.heightTexture) material_.heightScale = from_.bump_texopt.bump_multiplier;
+        } else {
+            skip(scene_, "MTL bump",
+                 "it does not say how high it stands; give -bm HEIGHT, or a normal map as norm");
+        }
+    }
+
     void noteRest() {
         const auto note = [&](bool isThere, const char* what, const char* why) {
             if (isThere) skip(scene_, what, why);
         };
         note(from_.ambient[0] > 0 || from_.ambient[1] > 0 || from_.ambient[2] > 0, "MTL Ka",
              "light that comes from nowhere is not shown");
-        note(!from_.bump_texname.empty(), "MTL bump",
-             "the material has no place for heights; give a normal map as norm");
-        note(!from_.displacement_texname.empty(), "MTL disp", "surfaces are not displaced");
         note(!from_.reflection_texname.empty(), "MTL refl", "reflections are traced");
         note(!from_.specular_highlight_texname.empty(), "MTL map_Ns", "the exponent is the same everywhere");
         note(!from_.sheen_texname.empty(), "MTL map_Ps", "sheen is the same everywhere");
+        note(!from_.displacement_texname.empty(), "MTL disp", "heights are those of bump with -bm");
         note(has("decal"), "MTL decal", "decals are not shown");
     }
 

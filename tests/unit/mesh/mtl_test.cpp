@@ -94,6 +94,15 @@ TEST_F(Mtl, Textures) {
     EXPECT_EQ(scene.skipped[0].first, "MTL bump");
 }
 
+TEST_F(Mtl, BumpIsAMapOfHeightsWhereItSaysHowHigh) {
+    writeImage("h.png", 0.5);
+    const Scene scene = sceneWith("Kd 1 1 1\nbump -bm 0.25 h.png\n");
+    const Material& material = scene.materials.at(0);
+    EXPECT_TRUE(material.heightTexture);
+    EXPECT_EQ(material.heightScale, 0.25f);
+    EXPECT_TRUE(scene.skipped.empty());
+}
+
 TEST_F(Mtl, LinksOutOfTheFolderWarn) {
     fs::create_directory(folder_ / "inside");
     write("secret.png", "");
