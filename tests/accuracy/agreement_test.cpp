@@ -70,7 +70,7 @@ void expectAgreement(Scene scene) {
             if (seen.x < 0) continue;
             depthError =
                 std::max(depthError, std::abs(double(raster.albedoDepth[i].w) / rays.depth[i] - 1.0));
-            for (int c = 0; c < 3 && !packed.baseColorTextures; ++c)
+            for (int c = 0; c < 3 && !packed.baseColorTextures && !packed.solidTextures; ++c)
                 albedoError =
                     std::max(albedoError, double(std::abs(raster.albedoDepth[i][c] - rays.albedo[i][c])));
             normals += glm::dot(glm::vec3(raster.normal[i]), rays.normal[i]) < 0.9999f;
