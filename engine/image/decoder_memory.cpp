@@ -105,12 +105,24 @@ DecoderMemory webpMemory(const Bytes& file) {
     return {};
 }
 
+/** Windows' BITMAPINFOHEADER: one compressed by run lengths is unfolded when it is opened. */
+DecoderMemory bmpMemory(const Bytes& file) {
+    const std::uint32_t compression = file.little32(30);
+    if (compression != 1 && compression != 2) return {};
+    const auto height = std::int32_t(file.little32(22));  // negative: from the top
+    DecoderMemory memory{0, file.little32(18),
+                         height < 0 ? 0u - std::uint32_t(height) : std::uint32_t(height)};
+    memory.bytes = std::uint64_t(memory.width) * memory.height;
+    return memory;
+}
+
 }  // namespace
 
 DecoderMemory decoderMemory(std::span<const std::byte> file) {
     const Bytes bytes(file);
     if (bytes.has("\x89PNG", 0)) return pngMemory(bytes);
     if (bytes.has("\xff\xd8", 0)) return jpegMemory(bytes);
+    if (bytes.has("BM", 0)) return bmpMemory(bytes);
     return bytes.has("RIFF", 0) ? webpMemory(bytes) : DecoderMemory{};
 }
 

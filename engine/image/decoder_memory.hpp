@@ -1,6 +1,5 @@
 #pragma once
-/** @file What libpng, libjpeg and libwebp keep of a whole image while they decode it, by the file's header.
- */
+/** @file What decoders keep of a whole image while they decode it, by the file's header. */
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,7 +12,7 @@ struct DecoderMemory {
 };
 
 /** An interlaced PNG's pixels, the coefficients of a JPEG whose scans refine it or hold single components, a
- * lossless WebP's pixels. */
+ * lossless WebP's pixels, those of a BMP of run lengths. */
 DecoderMemory decoderMemory(std::span<const std::byte> file);
 
 }  // namespace helio

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <string_view>
 
 namespace helio {
 namespace {
@@ -142,7 +143,14 @@ public:
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::open(file.string(), &hints);
         if (!input) return oneLine(OIIO::geterror());
-        return readAnyTexels(*input, input->spec(), std::filesystem::file_size(file), budget, image);
+        const ImageSpec& spec = input->spec();
+        const std::uint64_t encoded = std::filesystem::file_size(file);
+        // Others keep the whole image, or strips as high as it, while they read it.
+        const std::string_view format = input->format_name();
+        const bool byRows = format == "openexr" || format == "hdr";
+        if (!byRows && !budget.hold(spec.image_bytes(true), encoded))
+            return unfoldsTo(std::uint32_t(spec.width), std::uint32_t(spec.height), encoded);
+        return readAnyTexels(*input, spec, encoded, budget, image);
     } catch (const std::exception& error) {
         return oneLine(error.what());
     }

@@ -1,12 +1,28 @@
+#include "engine/image/decoder_memory.hpp"
 #include "engine/image/read_file.hpp"
 #include "engine/scene/image_decoding.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <string>
 #include <string_view>
 
 namespace helio {
+namespace {
+
+/** OpenEXR, Radiance, BMP and TIFF by their first bytes; TGA has none of its own. */
+bool isOtherFormat(const std::filesystem::path& file, std::string_view text) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text.starts_with("\x76\x2f\x31\x01") || text.starts_with("#?") || text.starts_with("BM") ||
+           text.starts_with(std::string_view("II*\0", 4)) || text.starts_with(std::string_view("MM\0*", 4)) ||
+           extension == ".tga";
+}
+
+}  // namespace
 
 TextureImage loadTextureImage(const std::filesystem::path& file, ImageBudget& budget) {
     DecodedImage decoded;
@@ -15,11 +31,15 @@ TextureImage loadTextureImage(const std::filesystem::path& file, ImageBudget& bu
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (isTextureFormat(bytes)) {
         fault = decodeImage(bytes, budget, decoded);
-    } else if (text.starts_with("\x76\x2f\x31\x01") || text.starts_with("#?")) {
+    } else if (isOtherFormat(file, text)) {
         budget.begin();
-        fault = imageBackend().decodeFile(file, budget, decoded);
+        const DecoderMemory memory = decoderMemory(bytes);
+        if (budget.hold(memory.bytes, bytes.size()))
+            fault = imageBackend().decodeFile(file, budget, decoded);
+        else
+            fault = unfoldsTo(memory.width, memory.height, bytes.size());
     } else {
-        fault = "is no PNG, JPEG, WebP, OpenEXR or Radiance image";
+        fault = "is no PNG, JPEG, WebP, OpenEXR, Radiance, TIFF, BMP or TGA image";
     }
     if (!fault.empty())
         throw InputError(file.string(), "", fault, "give a whole image file of a known format");

@@ -127,6 +127,65 @@ TEST_F(Gltf, ManyNodesThatSaySomethingLoad) {
     EXPECT_EQ(scene.nodes.back().translation.x, float(count - 1));
 }
 
+/** Numbers of so many bytes each, the least first. */
+std::string little(std::initializer_list<std::pair<int, std::uint32_t>> numbers) {
+    std::string text;
+    for (const auto& [size, number] : numbers)
+        for (int i = 0; i < size; ++i) text.push_back(char(number >> (8 * i) & 255));
+    return text;
+}
+
+/** Windows' headers of a picture. */
+std::string bmp(std::uint32_t width, std::uint32_t height, std::uint32_t bits, std::uint32_t compression,
+                const std::string& pixels) {
+    const std::uint32_t colors = bits == 8 ? 256 : 0, start = 54 + 4 * colors;
+    return "BM" +
+           little({{4, start + std::uint32_t(pixels.size())},
+                   {4, 0},
+                   {4, start},
+                   {4, 40},
+                   {4, width},
+                   {4, height},
+                   {2, 1},
+                   {2, bits},
+                   {4, compression},
+                   {4, std::uint32_t(pixels.size())},
+                   {4, 0},
+                   {4, 0},
+                   {4, colors},
+                   {4, 0}}) +
+           std::string(4 * colors, '\0') + pixels;
+}
+
+TEST_F(Gltf, TexturesOfOlderFormats) {
+    const std::string redGreen = little({{3, 0xff0000}, {3, 0x00ff00}});  // blue first
+    write("a.TGA",
+          little({{2, 0}, {1, 2}, {4, 0}, {1, 0}, {4, 0}, {2, 2}, {2, 1}, {1, 24}, {1, 0x20}}) + redGreen);
+    write("b.bmp", bmp(2, 1, 24, 0, redGreen + std::string(2, '\0')));
+    const auto entry = [](std::uint32_t tag, std::uint32_t type, std::uint32_t count, std::uint32_t value) {
+        return little({{2, tag}, {2, type}, {4, count}, {4, value}});
+    };
+    const std::uint32_t directory = 8, after = directory + 2 + 9 * 12 + 4;
+    write("c.tif", "II*" + std::string(1, '\0') + little({{4, directory}, {2, 9}}) + entry(256, 3, 1, 2) +
+                       entry(257, 3, 1, 1) + entry(258, 3, 3, after) + entry(259, 3, 1, 1) +
+                       entry(262, 3, 1, 2) + entry(273, 4, 1, after + 6) + entry(277, 3, 1, 3) +
+                       entry(278, 3, 1, 1) + entry(279, 4, 1, 6) +
+                       little({{4, 0}, {2, 8}, {2, 8}, {2, 8}, {3, 0x0000ff}, {3, 0x00ff00}}));
+    for (const char* name : {"a.TGA", "b.bmp", "c.tif"}) {
+        const TextureImage image = loadTextureImage(folder_ / name);
+        EXPECT_EQ(image.width, 2u) << name;
+        EXPECT_EQ(image.height, 1u) << name;
+        EXPECT_EQ(std::get<std::vector<std::uint8_t>>(image.texels),
+                  (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255}))
+            << name;
+    }
+    write("bomb.bmp", bmp(60000, 60000, 8, 1, std::string(100, '\0')));
+    write("bomb.tga",
+          little({{2, 0}, {1, 10}, {4, 0}, {1, 0}, {4, 0}, {2, 60000}, {2, 60000}, {1, 24}, {1, 0x20}}));
+    for (const char* name : {"bomb.bmp", "bomb.tga"})
+        EXPECT_THROW(loadTextureImage(folder_ / name), InputError) << name;
+}
+
 TEST_F(Gltf, SymbolicLinksStayInTheFolder) {
     const GltfDocument file = GltfDocument::triangle();
     json document = file.doc;

@@ -344,7 +344,7 @@ struct Scene {
     std::uint64_t triangleCount() const;
 };
 
-/** Reads an image file of any known format as a scene holds it: 8 or 16 bits as stored, all else as floats.
+/** Reads a PNG, JPEG, WebP, OpenEXR, HDR, TIFF, BMP or TGA file: 8 or 16 bits as stored, all else as floats.
  * What Environment::image or a texture wants. Throws InputError naming the file. */
 TextureImage loadTextureImage(const std::filesystem::path& file);
 
