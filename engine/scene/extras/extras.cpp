@@ -53,6 +53,14 @@ glm::vec3 channels(const json& value) {
     return {value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
 }
 
+/** What `names` calls by a word of theirs, into `to`; check() refuses other words. */
+template <class T, std::size_t N>
+void readName(const json& word, const std::pair<const char*, T> (&names)[N], T& to) {
+    for (const auto& [name, value] : names) {
+        if (word == name) to = value;
+    }
+}
+
 Scattering scatteringOf(const json& from) {
     using Model = Scattering::Model;
     constexpr std::pair<const char*, Model> models[] = {
@@ -62,9 +70,7 @@ Scattering scatteringOf(const json& from) {
         {"blinnPhong", Model::BlinnPhong},
     };
     Scattering to;
-    for (const auto& [name, model] : models) {
-        if (from["model"] == name) to.model = model;
-    }
+    readName(from["model"], models, to.model);
     to.roughness = from.value("roughness", to.roughness);
     if (from.contains("alpha")) to.alpha = {from["alpha"][0].get<float>(), from["alpha"][1].get<float>()};
     to.beckmann = from.value("facets", "ggx") == "beckmann";
@@ -83,9 +89,7 @@ SolidTexture solidOf(const json& from) {
                                                             {"marble", Pattern::Marble},
                                                             {"wood", Pattern::Wood}};
     SolidTexture to;
-    for (const auto& [name, pattern] : patterns) {
-        if (from["pattern"] == name) to.pattern = pattern;
-    }
+    readName(from["pattern"], patterns, to.pattern);
     if (from.contains("first")) to.first = channels(from["first"]);
     if (from.contains("second")) to.second = channels(from["second"]);
     to.scale = from.value("scale", to.scale);
@@ -185,9 +189,7 @@ void readCamera(const std::string& file, const json& object, int index, Camera& 
                                                                   {"latLong", Projection::LatLong},
                                                                   {"equidistant", Projection::Equidistant},
                                                                   {"equisolid", Projection::Equisolid}};
-    for (const auto& [name, projection] : projections) {
-        if (own->value("projection", "plane") == name) camera.projection = projection;
-    }
+    readName(own->value("projection", "plane"), projections, camera.projection);
     if (own->contains("fieldOfView") &&
         (camera.projection == Projection::Plane || camera.projection == Projection::LatLong))
         refuseCamera(file, index, "fieldOfView", "belongs to a fisheye", "leave it out");
@@ -221,9 +223,7 @@ void readNode(const std::string& file, const json& object, std::size_t index, No
                                                                {"intensity", Quantity::Intensity}};
     Meter meter;
     meter.name = node.name;
-    for (const auto& [name, quantity] : quantities) {
-        if (from["quantity"] == name) meter.quantity = quantity;
-    }
+    readName(from["quantity"], quantities, meter.quantity);
     const bool isPoint = meter.quantity == Quantity::Irradiance || meter.quantity == Quantity::Radiance;
     for (const char* side : {"width", "height"}) {
         if (isPoint && from.contains(side))
