@@ -4,10 +4,9 @@
 
 #include <heliograph/error.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace helio {
@@ -28,9 +27,6 @@ void check(const PackedScene& packed) {
            "use emissive surfaces, or render by paths");
     refuse(packed.environmentSize[0] > 0, "the environment is an image",
            "give a constant one, or render by paths");
-    if (packed.triangleCount > kMostPatches)
-        throw InputError("", "radiosity", fmt::format("the scene has {} triangles", packed.triangleCount),
-                         fmt::format("give at most {}, or render by paths", kMostPatches));
 }
 
 double areaOf(const std::array<glm::dvec3, 3>& c) {
@@ -40,6 +36,7 @@ double areaOf(const std::array<glm::dvec3, 3>& c) {
 }  // namespace
 
 PatchList cutIntoPatches(const PackedScene& packed, std::uint32_t count) {
+    assert(packed.triangleCount <= kMostPatches);
     check(packed);
     PatchList list;
     std::vector<std::array<glm::dvec3, 3>> triangles(packed.triangleCount);

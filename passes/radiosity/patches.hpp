@@ -29,8 +29,8 @@ struct PatchList {
 };
 
 /** Cuts the triangles of a packed scene into about `count` parts of like area, at least one each and at most
- * kMostPatches. Throws InputError where there are more triangles than that, or what is not Lambertian with
- * one colour a material, or light that is neither emission nor a constant environment. */
+ * kMostPatches, which the scene has no more triangles than. Throws InputError where there is what is not
+ * Lambertian with one colour a material, or light that is neither emission nor a constant environment. */
 PatchList cutIntoPatches(const PackedScene& packed, std::uint32_t count);
 
 }  // namespace helio
