@@ -96,7 +96,10 @@ private:
 
 /** A pixel's part of the error. */
 struct Term {
-    double measured = 0;  ///< d^2 / (truth^2 + 0.01), mean of the channels
+    /** d / sqrt(3 (truth^2 + 0.01)) of each channel: as good as independent from pixel to pixel, while
+     * channels share much of their noise. */
+    std::array<double, 3> error{};
+    double measured = 0;  ///< sum of its squares
     double smooth = 0;    ///< with the variance's smooth estimate in place of d^2
     double own = 0;       ///< see Truth
 };
@@ -111,30 +114,59 @@ struct Terms {
     std::size_t count = 0;
 };
 
-/** The variance of a pixel's a b, that is 4 sigma^4, taken together. Where the pixel is like those around it,
- * theirs says how large sigma^2 is: a product of independent terms, whose expectation no tail makes larger.
- * Where it is not, its own term has to: 4/3 d^4, half of it with the smooth variance for one factor, since
- * halves agree by chance. */
+double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** What a pixel's neighbours make of its term: means over those that have samples. */
+struct Around {
+    double alike = 0;    ///< (e . e')^2
+    double product = 0;  ///< (e . e) (e' . e')
+};
+
+Around around(const std::vector<Term>& pixels, const FilmImages& images, std::uint32_t x, std::uint32_t y) {
+    const std::size_t centre = std::size_t(y) * images.width + x;
+    Around sum;
+    int count = 0;
+    for (std::uint32_t v = y == 0 ? 0 : y - 1; v <= std::min(y + 1, images.height - 1); ++v) {
+        for (std::uint32_t u = x == 0 ? 0 : x - 1; u <= std::min(x + 1, images.width - 1); ++u) {
+            const std::size_t at = std::size_t(v) * images.width + u;
+            if (at == centre) continue;
+            const double both = dot(pixels[centre].error, pixels[at].error);
+            sum.alike += both * both;
+            sum.product += pixels[centre].measured * pixels[at].measured;
+            ++count;
+        }
+    }
+    return count > 0 ? Around{sum.alike / count, sum.product / count} : sum;
+}
+
+/** The variance of a pixel's a . b, taken together: 4 times the sum of squares of its errors' 3 x 3
+ * covariance, which is 4 sigma^4 where the channels err alike and less where they do not. Where the pixel is
+ * like those around it, 4 (e . e')^2 has that expectation, a product of independent terms, which no tail
+ * makes larger. Where it is not, its own term has to tell: (e . e)^2, half of it with the smooth variance for
+ * one factor, since halves agree by chance. Its expectation holds (sum of the variances)^2 too; how far that
+ * is more is the same for the whole picture, `together` = sum (e . e')^2 / sum (e . e) (e' . e'). */
 void addVariance(const std::vector<Term>& pixels, const FilmImages& images, Terms& terms) {
+    Around all;
+    std::vector<Around> neighbours;
     for (std::uint32_t y = 0; y < images.height; ++y) {
         for (std::uint32_t x = 0; x < images.width; ++x) {
-            const Term& term = pixels[std::size_t(y) * images.width + x];
-            if (term.measured == 0 && term.smooth == 0) continue;
-            double around = -term.measured;
-            int count = -1;
-            for (std::uint32_t v = y == 0 ? 0 : y - 1; v <= std::min(y + 1, images.height - 1); ++v) {
-                for (std::uint32_t u = x == 0 ? 0 : x - 1; u <= std::min(x + 1, images.width - 1); ++u) {
-                    around += pixels[std::size_t(v) * images.width + u].measured;
-                    ++count;
-                }
-            }
-            const double square = term.measured * term.measured;
-            const double alike = count > 0 ? 4 * term.measured * around / count : 4.0 / 3.0 * square;
-            const double alone = 2.0 / 3.0 * square + 2 * term.measured * term.smooth;
-            terms.variance += term.own * alone + (1 - term.own) * alike;
-            terms.squares += (1 - term.own) * 4.0 / 3.0 * square;
-            terms.neighbours += (1 - term.own) * alike;
+            neighbours.push_back(around(pixels, images, x, y));
+            all.alike += neighbours.back().alike;
+            all.product += neighbours.back().product;
         }
+    }
+    const double together = all.product > 0 ? std::clamp(all.alike / all.product, 1.0 / 3.0, 1.0) : 1.0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const Term& term = pixels[i];
+        if (term.measured == 0 && term.smooth == 0) continue;
+        const double square = 4 * together / (1 + 2 * together) * term.measured * term.measured;
+        const double alike = neighbours[i].product > 0 ? 4 * neighbours[i].alike : square;
+        const double alone = 0.5 * square + 2 * together * term.measured * term.smooth;
+        terms.variance += term.own * alone + (1 - term.own) * alike;
+        terms.squares += (1 - term.own) * square;
+        terms.neighbours += (1 - term.own) * alike;
     }
 }
 
@@ -156,6 +188,7 @@ Terms halvesTerms(const FilmImages& images, double gain) {
                 if (d == 0 && v == 0) continue;
                 const Truth truth = channels[c].truth(x, y);
                 const double weight = 1 / (3 * truth.denominator());
+                term.error[c] = d * std::sqrt(weight);
                 term.measured += d * d * weight;
                 term.smooth += v * weight;
                 term.own += truth.own / 3;

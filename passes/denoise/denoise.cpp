@@ -86,13 +86,14 @@ Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& gu
     const Image filteredA = filtered("denoise.a", a), filteredB = filtered("denoise.b", b);
     const Image merged = graph.image("denoise.merged", description);
     const Image scores = graph.image("denoise.scores", description);
+    const Image terms = graph.image("denoise.terms", description);
     graph.compute("denoise.merge", shaders::denoiseMerge)
         .reads({{"uA", filteredA},
                 {"uB", filteredB},
                 {"uMean", meanRead, Format::RGBA32F},
                 {"uDifference", differenceRead, Format::RGBA32F},
                 {"uWeights", graph.import(weights), Format::RGBA32F}})
-        .overwrites({{"uMerged", merged}, {"uScores", scores}})
+        .overwrites({{"uMerged", merged}, {"uScores", scores}, {"uTerms", terms}})
         .record([extent, merged](Commands& c) { c.push(extent).dispatchOver(merged); });
     const Image picture = graph.image("denoise.picture", description);
     graph.compute("denoise.choose", shaders::denoiseChoose)
@@ -100,17 +101,17 @@ Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& gu
         .overwrites({{"uPicture", picture}})
         .record([extent, picture](Commands& c) { c.push(extent).dispatchOver(picture); });
     const auto readPicture = graph.readback<glm::vec4>(picture);
-    const auto readScores = graph.readback<glm::vec4>(scores);
+    const auto readTerms = graph.readback<glm::vec4>(terms);
     Plan plan = graph.compile();
     const Execution execution = plan.execute();
 
     Denoised result;
     result.picture = readPicture.wait(execution);
-    const std::vector<glm::vec4> score = readScores.wait(execution);
+    const std::vector<glm::vec4> term = readTerms.wait(execution);
     for (std::size_t i = 0; i < pixels; ++i) {
         const double s = result.picture[i].w;
-        result.undenoised += double(score[i].z) / double(pixels);
-        result.relmse += (score[i].z - 2 * s * score[i].x + s * s * score[i].y) / double(pixels);
+        result.undenoised += double(term[i].z) / double(pixels);
+        result.relmse += (term[i].z - 2 * s * term[i].x + s * s * term[i].y) / double(pixels);
         result.strength += s / double(pixels);
     }
     result.relmse = std::max(result.relmse, 0.0);

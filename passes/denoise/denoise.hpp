@@ -12,8 +12,9 @@
  *     E[e (F - M)] = E[D d - d^2],      E[d^2] = E[e^2]
  *
  * for any filter and any noise. M + s (F - M) has therefore the expected squared error d^2 + 2 s (D d - d^2)
- * + s^2 (F - M)^2, which s = (d^2 - D d) / (F - M)^2 makes least. Both are summed over 9 x 9 pixels, relative
- * to brightness; where filtering would harm, s is 0 and the pixel stays as it was. */
+ * + s^2 (F - M)^2, which s = (d^2 - D d) / (F - M)^2 makes least. Both are summed over the 80 pixels around
+ * the pixel, relative to brightness; where filtering would harm, s is 0 and the pixel stays as it was. Since
+ * the pixel's own samples do not choose its s, they measure what it brings. */
 #include "engine/film/error_estimate.hpp"
 
 #include <heliograph/device.hpp>
@@ -34,8 +35,7 @@ struct DenoiseGuides {
 struct Denoised {
     std::vector<glm::vec4>
         picture;  ///< R G B, and s: 0 where the pixel was left as it is, 1 where it is filtered
-    /** Measured relMSE, and that of the picture before by the same measure. Since s was chosen by the same
-     * numbers, the first is low. */
+    /** Measured relMSE, and that of the picture before by the same measure. */
     double relmse = 0, undenoised = 0;
     double strength = 0;  ///< mean of s
     std::vector<PassTiming> timings;

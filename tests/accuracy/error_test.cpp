@@ -64,11 +64,17 @@ std::uint32_t leastSamples(SceneFilms& films, double limit) {
 }
 
 TEST(ErrorLimit, EndsWithin20PercentOfTheLeastSamplesThatSuffice) {
-    for (const char* name : {"cornell", "spheres"}) {
+    const std::vector<std::pair<const char*, std::vector<double>>> limits = {
+        {"cornell", {0.05, 0.02, 0.008}},
+        {"spheres", {0.05, 0.008, 0.003}},
+        {"metals", {0.02, 0.008}},
+        {"yard", {0.005, 0.0015}},
+        {"garden", {0.05, 0.01}}};
+    for (const auto& [name, ofScene] : limits) {
         const Scene scene = errorScene(name);
         SceneFilms films(device(), scene, {16, 16});
         Renderer renderer(deviceOptions());
-        for (const double limit : {0.05, 0.02, 0.008, 0.003}) {
+        for (const double limit : ofScene) {
             const std::uint32_t least = leastSamples(films, limit);
             RenderOptions options;
             options.size = {16, 16};

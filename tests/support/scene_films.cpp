@@ -15,7 +15,7 @@ SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2>
                                            placed.transform, options, target_.film());
 }
 
-FilmImages SceneFilms::denoised(const FilmImages& film) {
+Denoised SceneFilms::denoised(const FilmImages& film) {
     if (guides_.geometry.empty()) {
         const FirstHits hits = tracer_->firstHits();
         for (std::size_t i = 0; i < hits.depth.size(); ++i) {
@@ -23,10 +23,7 @@ FilmImages SceneFilms::denoised(const FilmImages& film) {
             guides_.albedo.emplace_back(hits.albedo[i], hits.instance[i] >= 0 ? 1.0f : 0.0f);
         }
     }
-    FilmImages result{film.width, film.height, {}, {}, {}};
-    for (const glm::vec4& pixel : denoise(device_, film, guides_).picture)
-        result.mean.insert(result.mean.end(), {pixel.x, pixel.y, pixel.z, pixel.w});
-    return result;
+    return denoise(device_, film, guides_);
 }
 
 void SceneFilms::trace(std::uint32_t begin, std::uint32_t end, const SampleAllocation* allocation) {
@@ -70,9 +67,13 @@ std::vector<double> MeanImage::mean() const {
 }
 
 double relativeError(const FilmImages& film, const std::vector<double>& reference) {
+    return relativeError(film.mean.data(), reference);
+}
+
+double relativeError(const float* texels, const std::vector<double>& reference) {
     double sum = 0;
     for (std::size_t i = 0; i < reference.size(); ++i) {
-        const double r = reference[i], x = film.mean[i / 3 * 4 + i % 3];
+        const double r = reference[i], x = texels[i / 3 * 4 + i % 3];
         sum += (x - r) * (x - r) / (r * r + 0.01);
     }
     return sum / double(reference.size());

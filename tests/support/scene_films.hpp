@@ -18,9 +18,8 @@ namespace helio::test {
 class SceneFilms {
 public:
     SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2> size, bool adaptive = false);
+    Denoised denoised(const FilmImages& film);
     /** A film of `samples` per pixel; on average where adaptive. */
-    /** A film's picture denoised, as a film that holds nothing but the picture. */
-    FilmImages denoised(const FilmImages& film);
     FilmImages render(std::uint32_t samples, std::uint32_t seed);
 
 private:
@@ -48,5 +47,7 @@ private:
 
 /** relMSE of a film's picture against a reference. */
 double relativeError(const FilmImages& film, const std::vector<double>& reference);
+/** The same of texels of four floats. */
+double relativeError(const float* texels, const std::vector<double>& reference);
 
 }  // namespace helio::test

@@ -1,4 +1,5 @@
 // Long experiments on the error estimate; see --help.
+#include "samples/heliograph/bench/bench_scenes.hpp"
 #include "tests/bench/error/coverage.hpp"
 #include "tests/bench/error/table.hpp"
 #include "tests/support/error_scenes.hpp"
@@ -14,6 +15,11 @@
 
 namespace {
 
+helio::Scene sceneOf(const std::string& name) {
+    const bool isBench = name == "furnace" || name == "irradiance";
+    return isBench ? helio::cli::benchScene(name) : helio::test::errorScene(name);
+}
+
 int coverage(const std::vector<std::string>& scenes, const helio::test::CoverageOptions& options) {
     helio::Device device;
     fmt::print("{}x{}, {} samples, {} seeds\n", options.size, options.size, options.samples, options.seeds);
@@ -21,8 +27,7 @@ int coverage(const std::vector<std::string>& scenes, const helio::test::Coverage
         "| scene | true relMSE | estimate / true | in the interval | above it | below it | reliable | "
         "high / low |\n|---|---|---|---|---|---|---|---|\n");
     for (const std::string& scene : scenes) {
-        const helio::test::Coverage c =
-            helio::test::measureCoverage(device, helio::test::errorScene(scene), scene, options);
+        const helio::test::Coverage c = helio::test::measureCoverage(device, sceneOf(scene), scene, options);
         const double percent = 100.0 / c.seeds;
         fmt::print("| {} | {:.3g} | {:.4f} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {:.3f} |\n", scene,
                    c.truth, c.estimate / c.truth, c.covered * percent, c.above * percent, c.below * percent,
@@ -35,13 +40,18 @@ int coverage(const std::vector<std::string>& scenes, const helio::test::Coverage
 int table(const std::vector<std::string>& scenes, const helio::test::TableOptions& options) {
     helio::Device device;
     fmt::print("{}x{}, mean of {} seeds\n", options.size, options.size, options.seeds);
-    fmt::print("| scene | samples | plain | adaptive / plain | denoised / plain |\n|---|---|---|---|---|\n");
-    const std::vector<std::uint32_t> samples = {4, 16, 64};
+    fmt::print(
+        "| scene | samples | plain | adaptive / plain | denoised / plain | at worst | plain measured / true "
+        "| "
+        "denoised measured / true |\n|---|---|---|---|---|---|---|---|\n");
+    const std::vector<std::uint32_t> samples = {4, 8, 16, 32, 64};
     for (const std::string& scene : scenes) {
-        const auto rows = helio::test::measureRows(device, helio::test::errorScene(scene), samples, options);
+        const auto rows = helio::test::measureRows(device, sceneOf(scene), samples, options);
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            fmt::print("| {} | {} | {:.3g} | {:.3f} | {:.3f} |\n", scene, samples[i], rows[i].plain,
-                       rows[i].adaptive / rows[i].plain, rows[i].denoised / rows[i].plain);
+            const helio::test::TableRow& row = rows[i];
+            fmt::print("| {} | {} | {:.3g} | {:.3f} | {:.3f} | {:.3f} | {:.2f} | {:.2f} |\n", scene,
+                       samples[i], row.plain, row.adaptive / row.plain, row.denoised / row.plain, row.worst,
+                       row.plainMeasured / row.plain, row.denoisedMeasured / row.denoised);
         }
         std::fflush(stdout);
     }
@@ -57,7 +67,10 @@ int main(int argc, char** argv) try {
     std::vector<std::string> scenes = {"cornell", "plates", "room", "spheres"};
     CLI::App* command =
         app.add_subcommand("coverage", "How often the 95 % interval of the relMSE holds the true one");
-    command->add_option("scenes", scenes, "Samples, room, spheres, yard, metals or blinds")
+    command
+        ->add_option(
+            "scenes", scenes,
+            "Samples, furnace, irradiance, room, spheres, or those of tests/support/held_out_scenes.hpp")
         ->capture_default_str();
     command->add_option("--seeds", options.seeds)->capture_default_str();
     command->add_option("--spp", options.samples)->capture_default_str();
@@ -67,7 +80,10 @@ int main(int argc, char** argv) try {
     helio::test::TableOptions tableOptions;
     std::vector<std::string> tableScenes = {"cornell", "plates", "glass", "lights500", "room", "spheres"};
     CLI::App* tableCommand = app.add_subcommand("table", "relMSE plain, adaptive and denoised");
-    tableCommand->add_option("scenes", tableScenes, "Samples, room, spheres, yard, metals or blinds")
+    tableCommand
+        ->add_option(
+            "scenes", tableScenes,
+            "Samples, furnace, irradiance, room, spheres, or those of tests/support/held_out_scenes.hpp")
         ->capture_default_str();
     tableCommand->add_option("--seeds", tableOptions.seeds)->capture_default_str();
     tableCommand->add_option("--reference", tableOptions.reference, "Samples of the truth")

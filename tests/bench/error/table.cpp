@@ -2,6 +2,8 @@
 
 #include "tests/support/scene_films.hpp"
 
+#include <algorithm>
+
 namespace helio::test {
 
 std::vector<TableRow> measureRows(Device& device, const Scene& scene,
@@ -18,8 +20,14 @@ std::vector<TableRow> measureRows(Device& device, const Scene& scene,
         TableRow row;
         for (std::uint32_t seed = 1; seed <= options.seeds; ++seed) {
             const FilmImages film = plain.render(count, seed);
-            row.plain += relativeError(film, truth) / options.seeds;
-            row.denoised += relativeError(plain.denoised(film), truth) / options.seeds;
+            const Denoised denoised = plain.denoised(film);
+            const double before = relativeError(film, truth),
+                         after = relativeError(&denoised.picture.data()->x, truth);
+            row.plain += before / options.seeds;
+            row.denoised += after / options.seeds;
+            row.worst = std::max(row.worst, (after - residual) / (before - residual));
+            row.plainMeasured += denoised.undenoised / options.seeds;
+            row.denoisedMeasured += denoised.relmse / options.seeds;
             row.adaptive += relativeError(adaptive.render(count, seed), truth) / options.seeds;
         }
         row.plain -= residual;

@@ -15,9 +15,11 @@ struct TableOptions {
     std::uint32_t seeds = 16, size = 64, reference = 4096;
 };
 
-/** Mean relMSE over seeds. */
+/** Mean relMSE over seeds, and what is told of it. */
 struct TableRow {
     double plain = 0, adaptive = 0, denoised = 0;
+    double worst = 0;                                ///< largest denoised / plain of a seed
+    double plainMeasured = 0, denoisedMeasured = 0;  ///< Denoised::undenoised, relmse
 };
 
 /** Renders plainly and otherwise under every seed, for each number of samples. The truth is a plain picture

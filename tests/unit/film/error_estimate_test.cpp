@@ -107,6 +107,32 @@ TEST(ErrorEstimate, IntervalCoversTheRealisedErrorWhereItIsReliable) {
     EXPECT_GT(covered, 0.9 * reliable) << covered << " of " << reliable;
 }
 
+TEST(ErrorEstimate, ChannelsThatErrApartNarrowTheInterval) {
+    // 48 x 48 pixels of three independent channels: the estimate's error is that of 6912 grey ones.
+    constexpr unsigned seeds = 100;
+    unsigned covered = 0;
+    double width = 0;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+        Synthetic all = synthesize(48, 32, flat, normalNoise, 3 * seed);
+        for (std::size_t c = 1; c < 3; ++c) {
+            const Synthetic one = synthesize(48, 32, flat, normalNoise, 3 * seed + unsigned(c));
+            all.relmse += one.relmse;
+            for (std::size_t i = c; i < all.film.mean.size(); i += 4) {
+                all.film.mean[i] = one.film.mean[i];
+                all.film.variance[i] = one.film.variance[i];
+                all.film.difference[i] = one.film.difference[i];
+            }
+        }
+        const ErrorEstimate e = estimateError(all.film);
+        covered += e.low <= all.relmse / 3 && all.relmse / 3 <= e.high;
+        width += std::log(e.high / e.low) / seeds;
+    }
+    // Relative standard error sqrt(4 / 6912) = 0.0241, and the model's 0.01.
+    EXPECT_NEAR(width, 3.92 * std::hypot(0.0241, 0.01 / 1.96), 0.01);
+    // Of chance 0.95: fewer than 86 in 1 of 5000
+    EXPECT_GE(covered, 86u);
+}
+
 TEST(ErrorEstimate, NormalNoiseAtManySamplesIsReliable) {
     EXPECT_TRUE(estimateError(synthesize(48, 64, checkers, normalNoise, 1).film).reliable);
 }

@@ -1,0 +1,22 @@
+#pragma once
+/** @file Scenes that no estimate was set on. */
+#include <heliograph/scene.hpp>
+
+#include <map>
+#include <string>
+
+namespace helio::test {
+
+/** By name, without samples that are worth more than a bounded multiple of the picture's brightness (all
+ * moments of their errors are finite):
+ *   yard     blocks between three walls under sky and a point light
+ *   metals   rough metal spheres on a glossy floor under two coloured lamps
+ *   blinds   a wide lamp behind slats
+ *   garden   a textured floor under an environment image with a veiled sun
+ *   shelf    spheres before and behind the plane that a lens is focused at
+ *   pane     a block of smooth glass before another on a checkered floor, under a constant sky
+ *   cellar   a box like Cornell's with two lamps
+ *   lacquer  clear coats and glossy plastic under a point light and a dim sky */
+const std::map<std::string, Scene (*)()>& heldOutScenes();
+
+}  // namespace helio::test
