@@ -8,7 +8,7 @@ fail() { printf 'heliograph: error: %s\n' "$*" >&2; exit 1; }
 cmake/install-packages.sh build
 jobs=$(nproc)
 echo "Configuring and building in build/ with $jobs jobs (a first build takes some minutes)"
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DHELIOGRAPH_TESTS=OFF --log-level=WARNING >/dev/null ||
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON -DHELIOGRAPH_TESTS=OFF --log-level=WARNING >/dev/null ||
     fail "CMake could not configure the build; its messages are above"
 cmake --build build --parallel "$jobs" || fail "the build failed; the compiler's messages are above"
 

@@ -10,8 +10,7 @@
 namespace helio {
 namespace {
 
-constexpr double regularizer = 0.01;  // of relMSE
-constexpr double modelError = 0.01;   // of the estimate's logarithm, for edges and textures
+constexpr double modelError = 0.01;  // of the estimate's logarithm, for edges and textures
 /** Of the logarithm of what the denominator's choice changes. */
 constexpr double denominatorDoubt = 0.02;
 /** Of what pixels' own terms say of the sum's variance over what their neighbours' say, where a pixel is like
@@ -28,7 +27,7 @@ double finiteOr(double x, double otherwise) {
 struct Truth {
     double squared = 0;  ///< for relMSE's denominator
     double own = 1;      ///< how much of it is the pixel's own value, not its neighbours'
-    double denominator() const { return squared + regularizer; }
+    double denominator() const { return squared + relMseRegularizer; }
 };
 
 /** One channel of a film, and the variance of its pixels. */
@@ -52,7 +51,7 @@ public:
         const std::size_t pixel = std::size_t(y) * images_.width + x;
         const double centre = value(pixel), d = difference(pixel), own = noise(pixel);
         // Too little noise to matter.
-        if (own < 1e-3 * (centre * centre + regularizer)) return {centre * centre};
+        if (own < 1e-3 * (centre * centre + relMseRegularizer)) return {centre * centre};
         double like = 0, likeNoise = 0;            // of neighbours that the pixel cannot be told from
         double meanA = 0, meanB = 0, product = 0;  // of all neighbours
         int count = 0, all = 0;
@@ -192,7 +191,7 @@ Terms halvesTerms(const FilmImages& images, double gain) {
                 term.measured += d * d * weight;
                 term.smooth += v * weight;
                 term.own += truth.own / 3;
-                terms.ownSum += d * d / (3 * (value * value + regularizer));
+                terms.ownSum += d * d / (3 * (value * value + relMseRegularizer));
             }
             terms.sum += term.measured;
             ++terms.count;
@@ -212,7 +211,7 @@ ErrorEstimate fromNeighbours(const FilmImages& images) {
             for (std::size_t c = 0; c < 3; ++c) {
                 const double a = images.mean[i + c], b = images.mean[i + c - 4], m = 0.5 * (a + b);
                 if (!std::isfinite(a) || !std::isfinite(b)) continue;
-                sum += 0.5 * (a - b) * (a - b) / (m * m + regularizer);
+                sum += 0.5 * (a - b) * (a - b) / (m * m + relMseRegularizer);
                 ++count;
             }
         }
@@ -230,8 +229,8 @@ double stratificationGain(const FilmImages& images) {
         for (std::size_t c = 0; c < 3; ++c) {
             const double value = images.mean[i + c], d = images.difference[i + c], v = images.variance[i + c];
             if (!std::isfinite(value) || !std::isfinite(d) || !std::isfinite(v)) continue;
-            measured += d * d / (value * value + regularizer);
-            independent += v / (value * value + regularizer);
+            measured += d * d / (value * value + relMseRegularizer);
+            independent += v / (value * value + relMseRegularizer);
         }
     }
     return measured > 0 && independent > 0 ? measured / independent : 1;

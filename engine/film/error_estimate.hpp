@@ -17,6 +17,9 @@ struct FilmImages {
         difference;  ///< its square is an unbiased estimate of the mean's variance; 1 if there is one
 };
 
+/** Added to the squared truth in relMSE, so that black pixels do not count without bound. */
+inline constexpr double relMseRegularizer = 0.01;
+
 /** Estimates the image's relMSE, mean((x - truth)^2 / (truth^2 + 0.01)), with a 95 % interval for the
  * realised error of this very image.
  *

@@ -1,5 +1,7 @@
 #include "engine/film/sample_allocation.hpp"
 
+#include "engine/film/error_estimate.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -14,7 +16,6 @@ constexpr double largestShare = 16;  // the path tracer takes 4096 samples at a 
 double benefitOfDoubt(std::uint32_t pilot) {
     return 0.2 + 2.0 / pilot;
 }
-constexpr double regularizer = 0.01;  // of relMSE
 
 /** A pixel's relative variance: half from the difference of the halves, which knows how far samples are
  * stratified, half from the samples' variance times the picture's `gain`, which is less noisy. */
@@ -23,7 +24,7 @@ double relativeVariance(const FilmImages& film, std::size_t pixel, double gain) 
     for (std::size_t c = 0; c < 3; ++c) {
         const double x = film.mean[4 * pixel + c], d = film.difference[4 * pixel + c];
         const double both = 0.5 * (d * d + gain * film.variance[4 * pixel + c]);
-        const double relative = both / (x * x + regularizer);
+        const double relative = both / (x * x + relMseRegularizer);
         if (std::isfinite(relative)) sum += relative;
     }
     return sum;

@@ -6,8 +6,8 @@
 namespace helio {
 namespace {
 
-constexpr std::uint32_t radius = 3;  // pixels around the centre
-constexpr double priorPixels = 16;   // weight of the image's own ratio
+constexpr std::uint32_t windowRadius = 3;  // pixels around the centre
+constexpr double priorPixels = 16;         // weight of the image's own ratio
 
 /** Ratios of pixels, d^2 over the film's variance, summed over the channels of each. */
 struct Ratios {
@@ -32,12 +32,12 @@ Ratios ratioAt(const FilmImages& images, std::size_t pixel) {
     return {measured / independent, 1};
 }
 
-/** Sums over a window of 2 radius + 1 along a line, by adding up afresh: no drift, few terms. */
+/** Sums over a window of 2 windowRadius + 1 along a line, by adding up afresh: no drift, few terms. */
 template <typename At>
-Ratios windowSum(std::uint32_t centre, std::uint32_t extent, At at) {
+Ratios windowRatios(std::uint32_t centre, std::uint32_t extent, At at) {
     Ratios sum;
-    const std::uint32_t first = centre < radius ? 0 : centre - radius;
-    const std::uint32_t last = std::min(centre + radius, extent - 1);
+    const std::uint32_t first = centre < windowRadius ? 0 : centre - windowRadius;
+    const std::uint32_t last = std::min(centre + windowRadius, extent - 1);
     for (std::uint32_t i = first; i <= last; ++i) sum += at(i);
     return sum;
 }
@@ -55,14 +55,14 @@ std::vector<float> varianceOfMean(const FilmImages& images) {
         for (std::uint32_t x = 0; x < images.width; ++x) {
             all += ratioAt(images, row + x);
             rows[row + x] =
-                windowSum(x, images.width, [&](std::uint32_t i) { return ratioAt(images, row + i); });
+                windowRatios(x, images.width, [&](std::uint32_t i) { return ratioAt(images, row + i); });
         }
     }
     if (all.count == 0) return result;
     const double imageRatio = all.sum / all.count;
     for (std::uint32_t y = 0; y < images.height; ++y) {
         for (std::uint32_t x = 0; x < images.width; ++x) {
-            const Ratios sum = windowSum(
+            const Ratios sum = windowRatios(
                 y, images.height, [&](std::uint32_t i) { return rows[std::size_t(i) * images.width + x]; });
             const double ratio = (sum.sum + priorPixels * imageRatio) / (sum.count + priorPixels);
             const std::size_t at = 4 * (std::size_t(y) * images.width + x);

@@ -7,10 +7,6 @@
 namespace helio::graph {
 namespace {
 
-bool isWrite(Mode mode) {
-    return mode != Mode::Read;
-}
-
 Touch touchOf(Usage usage, Mode mode) {
     const bool reads = mode == Mode::Read || mode == Mode::Modify;
     const bool writes = isWrite(mode);

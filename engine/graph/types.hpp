@@ -55,6 +55,10 @@ enum class Mode : std::uint8_t {
     Modify,
 };
 
+inline bool isWrite(Mode mode) {
+    return mode != Mode::Read;
+}
+
 /** How a binding reaches its resource. */
 enum class Usage : std::uint8_t {
     StorageBuffer,

@@ -8,9 +8,6 @@
 namespace helio::graph {
 namespace {
 
-bool isWrite(Mode mode) {
-    return mode != Mode::Read;
-}
 /** Whether a mode asks for contents that an earlier pass must have left. */
 bool needsContents(Mode mode) {
     return mode == Mode::Read || mode == Mode::Modify;

@@ -1,9 +1,8 @@
 /** @file Rows A4 to A7: antialiasing of the raster pipeline against exact coverage. */
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 #include "tests/support/shader_harness.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <glm/glm.hpp>
@@ -20,12 +19,9 @@
 namespace helio {
 namespace {
 
-constexpr std::uint32_t kSize = 48;
+using test::renderer;
 
-Renderer& renderer() {
-    static Renderer shared(test::deviceOptions());
-    return shared;
-}
+constexpr std::uint32_t kSize = 48;
 
 using Polygon = std::vector<glm::dvec2>;
 

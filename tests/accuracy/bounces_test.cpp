@@ -2,10 +2,9 @@
 #include "passes/film/film.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "tests/accuracy/path_scenes.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,11 +13,6 @@
 
 namespace helio::test {
 namespace {
-
-Renderer& renderer() {
-    static Renderer one(deviceOptions());
-    return one;
-}
 
 /** A closed room that emits 1. */
 Scene furnace(float albedo) {

@@ -1,8 +1,6 @@
 // The conventions of geometry and radiometry, each from a glTF file to the pixels of both pipelines.
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 #include "tests/unit/gltf_support.hpp"
-
-#include <heliograph/renderer.hpp>
 
 #include <numbers>
 
@@ -11,11 +9,6 @@ namespace {
 
 constexpr Pipeline kBoth[] = {Pipeline::Path, Pipeline::Raster};
 constexpr double pi = std::numbers::pi;
-
-Renderer& renderer() {
-    static Renderer shared(deviceOptions());
-    return shared;
-}
 
 class Conventions : public Gltf {
 protected:

@@ -1,28 +1,22 @@
 // The integrators beside path tracing: what each follows of light's ways, by closed forms.
 #include "tests/accuracy/path_scenes.hpp"
+#include "tests/support/renderer.hpp"
 
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace helio::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-Renderer& renderer() {
-    static Renderer one({.validation = true});
-    return one;
-}
-
-struct Mean {
+struct Estimate {
     double value = 0, error = 0;
 };
-Mean render(const Scene& scene, Integrator integrator, std::uint32_t samples) {
+Estimate render(const Scene& scene, Integrator integrator, std::uint32_t samples) {
     RenderOptions o;
     o.size = {16, 16};
     o.samples = samples;
@@ -31,7 +25,7 @@ Mean render(const Scene& scene, Integrator integrator, std::uint32_t samples) {
     const RenderResult result = renderer().render(scene, o);
     EXPECT_TRUE(renderer().device().validationMessages().empty());
     EXPECT_EQ(result.nanCount, 0u);
-    Mean mean;
+    Estimate mean;
     const auto variance = std::size_t(result.image.channel("variance.R"));
     for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 16; ++x) {
@@ -42,7 +36,7 @@ Mean render(const Scene& scene, Integrator integrator, std::uint32_t samples) {
     return mean;
 }
 
-void expectMean(const Mean& mean, double truth, double tolerance, const std::string& what) {
+void expectMean(const Estimate& mean, double truth, double tolerance, const std::string& what) {
     const double z = mean.error > 0 ? (mean.value - truth) / mean.error : 0.0;
     fmt::print("{}: {:.6f} +- {:.6f}, truth {:.6f}, z {:+.2f}\n", what, mean.value, mean.error, truth, z);
     EXPECT_LT(std::abs(z), 4.0) << what;
@@ -66,9 +60,9 @@ Scene patch(const glm::vec3& eye) {
 
 TEST(Integrators, HemisphereHasTheMeanOfLightSamplingAndItsPredictedVariance) {
     const Scene scene = patch({3, 0.5f, 0.4f});
-    const double truth = 0.752274688454 / kPi;
-    const Mean direct = render(scene, Integrator::Direct, 256),
-               naive = render(scene, Integrator::Hemisphere, 1024);
+    const double truth = 0.752274688454 / std::numbers::pi;
+    const Estimate direct = render(scene, Integrator::Direct, 256),
+                   naive = render(scene, Integrator::Hemisphere, 1024);
     expectMean(direct, truth, 0.005, "direct");
     expectMean(naive, truth, 0.01, "hemisphere");
     // x = 2 cos over the light's solid angle, else 0: E[x^2] = 1/(2 pi) times the integral of 4 cos^2 over
@@ -80,7 +74,7 @@ TEST(Integrators, HemisphereHasTheMeanOfLightSamplingAndItsPredictedVariance) {
             const double x = (i + 0.5) / n - 0.5, y = (k + 0.5) / n - 0.5, d2 = x * x + y * y + 1;
             squares += 4 / d2 / (d2 * std::sqrt(d2)) / (n * n);
         }
-    const double sigma = std::sqrt((squares / (2 * kPi) - truth * truth) / (256.0 * 1024));
+    const double sigma = std::sqrt((squares / (2 * std::numbers::pi) - truth * truth) / (256.0 * 1024));
     fmt::print("standard error {:.6f}, predicted {:.6f}\n", naive.error, sigma);
     EXPECT_NEAR(naive.error / sigma, 1.0, 0.03);
     EXPECT_GT(naive.error * 2, 3 * direct.error);  // at four times the samples
@@ -117,7 +111,7 @@ TEST(Integrators, WhittedFollowsMirrors) {
     b.camera({3, 0.25f, 0.4f}, {8, 0, 0}, 1e-5f, {0, 0, 1});
     // Direct light ends at the mirror; Whitted's goes on. The mirror's own light on the patch is a second
     // scattering, which neither has.
-    const double truth = 0.752274688454 / kPi;
+    const double truth = 0.752274688454 / std::numbers::pi;
     expectMean(render(scene, Integrator::Whitted, 256), truth, 0.005, "seen directly");
     expectMean(render(b.scene, Integrator::Whitted, 256), truth, 0.005, "seen in the mirror");
     EXPECT_EQ(render(b.scene, Integrator::Direct, 64).value, 0.0);
@@ -148,7 +142,7 @@ int reflections(glm::dvec2 p, glm::dvec2 d, double wedge) {
 /** Two mirrors that halve light make a wedge of 60 degrees under a sky of 1: a ray that is turned n times
  * shows 2^-n, and nothing where paths are cut before that. */
 TEST(Integrators, TwoMirrorsTurnARayAsOftenAsGeometrySays) {
-    constexpr double wedge = kPi / 3;
+    constexpr double wedge = std::numbers::pi / 3;
     SceneBuilder b;
     Material mirror;
     mirror.scattering = Scattering{.model = Scattering::Model::Mirror};

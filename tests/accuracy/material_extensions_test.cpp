@@ -3,10 +3,8 @@
  * extension's own formulas in double. The files hold a plate seen from straight above under a sun at 40
  * degrees, so that a pixel is the BRDF's value times the cosine.
  */
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 #include "tests/unit/gltf_support.hpp"
-
-#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 
@@ -21,11 +19,6 @@ namespace {
 using Vec = glm::dvec3;
 constexpr double kPi = std::numbers::pi;
 constexpr double kLift = 40 * kPi / 180;
-
-Renderer& renderer() {
-    static Renderer one(deviceOptions());
-    return one;
-}
 
 /** The pixel in the middle, or a row's mean. */
 Vec meanOf(const ImageF& image) {

@@ -1,9 +1,8 @@
 // Meters of radiance, irradiance, intensity and flux, by closed forms.
 #include "tests/accuracy/path_scenes.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/photometry.hpp>
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <fmt/format.h>
@@ -12,17 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace helio::test {
 namespace {
 
 using Quantity = Meter::Quantity;
-constexpr double kPi = 3.14159265358979323846;
-
-Renderer& renderer() {
-    static Renderer one(deviceOptions());
-    return one;
-}
 
 /** Adds a meter at `place` that faces along `direction`. */
 void addMeter(Scene& scene, Quantity quantity, const glm::dvec3& place, const glm::dvec3& direction,
@@ -102,10 +96,11 @@ TEST(Meters, IrradianceOfPointLightsAndTheSky) {
     sky.scene.environment = Environment{glm::vec3(1.0f, 2.0f, 3.0f), -1};
     addMeter(sky.scene, Quantity::Irradiance, {0, 0, 0}, {1, 2, 3});
     const auto under = read(sky.scene, 4);
-    expectReading(under[0], kPi, 1e-7);
-    EXPECT_NEAR(under[0].value[2], 3 * kPi, 1e-5);
+    expectReading(under[0], std::numbers::pi, 1e-7);
+    EXPECT_NEAR(under[0].value[2], 3 * std::numbers::pi, 1e-5);
     // Photometry: 683 lm/W and the luminance of the three.
-    EXPECT_NEAR(under[0].photometric, 683 * kPi * (0.212639 + 2 * 0.715169 + 3 * 0.072192), 1e-4 * 683 * 6);
+    EXPECT_NEAR(under[0].photometric, 683 * std::numbers::pi * (0.212639 + 2 * 0.715169 + 3 * 0.072192),
+                1e-4 * 683 * 6);
     EXPECT_EQ(under[0].photometricUnit(), "lx");
 }
 
@@ -121,7 +116,7 @@ TEST(Meters, FluxThroughABoxIsThePower) {
                 place[axis] = side;
                 addMeter(b.scene, Quantity::Flux, place, -place, 2, 2);
             }
-        const double truth = point ? 4 * kPi * 2 : kPi;
+        const double truth = point ? 4 * std::numbers::pi * 2 : std::numbers::pi;
         double sum = 0, variance = 0;
         for (const MeterReading& reading : read(b.scene, 128)) {
             sum += reading.value[0];
@@ -138,7 +133,7 @@ TEST(Meters, FluxThroughABoxIsThePower) {
  * before it. */
 TEST(Meters, IntensityAndRadianceOfALambertianSquare) {
     for (const double degrees : {0.0, 60.0}) {
-        const double angle = degrees * kPi / 180;
+        const double angle = degrees * std::numbers::pi / 180;
         const glm::dvec3 towards(std::sin(angle), 0, -std::cos(angle));
         SceneBuilder b = squareLight(1, 0);
         addMeter(b.scene, Quantity::Intensity, 3.0 * towards, -towards, 2, 2);
@@ -163,7 +158,7 @@ TEST(Meters, BasicRadianceInGlass) {
     addMeter(b.scene, Quantity::Irradiance, {0.05, 0.02, 0.03}, {0.3, 0.2, 1});
     const auto readings = read(b.scene, 64);
     expectReading(readings[0], 2.25, 0.002);
-    expectReading(readings[1], 2.25 * kPi, 0.002);
+    expectReading(readings[1], 2.25 * std::numbers::pi, 0.002);
 }
 
 /** In a furnace all light is alike: a meter on a wall reads pi times the radiance, and depths count as a
@@ -175,10 +170,10 @@ TEST(Meters, OnAWallOfAFurnace) {
     addMeter(b.scene, Quantity::Irradiance, {-1, 0.3, 0.1}, {1, 0, 0});
     addMeter(b.scene, Quantity::Radiance, {-1, 0.3, 0.1}, {1, 0.5, 0.25});
     const auto all = read(b.scene, 256);
-    expectReading(all[0], 2 * kPi, 0.003);
+    expectReading(all[0], 2 * std::numbers::pi, 0.003);
     expectReading(all[1], 2, 0.005);
     const auto once = read(b.scene, 256, [](RenderOptions& o) { o.maxDepth = 1; });
-    expectReading(once[0], 1.5 * kPi, 0.003);
+    expectReading(once[0], 1.5 * std::numbers::pi, 0.003);
     expectReading(once[1], 1.5, 0.003);
     // Integrators that follow no paths of light say that they read none.
     b.scene.cameras.emplace_back();

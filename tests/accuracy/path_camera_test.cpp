@@ -13,11 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace helio::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 PathTraceOptions options(std::uint32_t width, std::uint32_t height,
                          SamplerKind sampler = SamplerKind::Independent) {
@@ -98,7 +97,8 @@ TEST(CameraLens, ThePublishedCircleOfConfusion) {
     EXPECT_NEAR(measured / circle, 1, 0.01);
 
     // A disc of one brightness, the emitter's share of the circle that the lens sees at its distance.
-    const double level = std::pow(side / (kAperture * (distance - kFocus) / kFocus), 2) / (kPi / 4);
+    const double level =
+        std::pow(side / (kAperture * (distance - kFocus) / kFocus), 2) / (std::numbers::pi / 4);
     const double inside = circle / 2 - side * kImage / distance,
                  outside = circle / 2 + side * kImage / distance;
     double sum = 0;
@@ -213,7 +213,7 @@ TEST(CameraLens, BladesShapeTheBlur) {
         const double circle = kAperture * std::abs(distance - kFocus) / distance * kImage / kFocus;
         SceneBuilder b = lensScene(sensor, distance, side);
         b.scene.cameras[0].lens->blades = 3;
-        b.scene.cameras[0].lens->bladeRotation = float(kPi / 2);  // a corner upwards
+        b.scene.cameras[0].lens->bladeRotation = float(std::numbers::pi / 2);  // a corner upwards
         const Moments m = moments(trace(b.scene, options(pixels, pixels, SamplerKind::Sobol), 1024));
         // Of a triangle in a circle of radius R: R^2 / 8 per axis, third moment R^3 / 40 towards the corner.
         const double radius = circle / 2 / pixel, square = side * kImage / distance / pixel;
@@ -232,7 +232,8 @@ TEST(CameraLens, BladesShapeTheBlur) {
  * outside of a fisheye's circle. */
 bool directionOf(const Camera& camera, glm::dvec2 point, glm::dvec2 size, glm::dvec3& d) {
     if (camera.projection == Projection::LatLong) {
-        const double longitude = (point.x / size.x - 0.5) * 2 * kPi, polar = point.y / size.y * kPi;
+        const double longitude = (point.x / size.x - 0.5) * 2 * std::numbers::pi,
+                     polar = point.y / size.y * std::numbers::pi;
         d = {std::sin(polar) * std::sin(longitude), std::cos(polar), -std::sin(polar) * std::cos(longitude)};
         return true;
     }
@@ -253,9 +254,9 @@ struct Wide {
     std::uint32_t width, height;
 };
 const Wide kWide[] = {{"panorama", Projection::LatLong, 3, 128, 64},
-                      {"equidistant 180", Projection::Equidistant, float(kPi), 96, 80},
-                      {"equidistant 360", Projection::Equidistant, float(2 * kPi), 80, 80},
-                      {"equisolid 180", Projection::Equisolid, float(kPi), 80, 96},
+                      {"equidistant 180", Projection::Equidistant, float(std::numbers::pi), 96, 80},
+                      {"equidistant 360", Projection::Equidistant, float(2 * std::numbers::pi), 80, 80},
+                      {"equisolid 180", Projection::Equisolid, float(std::numbers::pi), 80, 96},
                       {"equisolid 300", Projection::Equisolid, 5.2f, 80, 80}};
 
 TEST(CameraWide, PixelsSeeTheDirectionsTheyStandFor) {
@@ -298,7 +299,8 @@ TEST(CameraWide, PixelsSeeTheDirectionsTheyStandFor) {
 /** Radians squared that an image point stands for, per pixel. */
 double solidAngle(const Camera& camera, glm::dvec2 point, glm::dvec2 size) {
     if (camera.projection == Projection::LatLong)
-        return 2 * kPi * kPi / (size.x * size.y) * std::sin(point.y / size.y * kPi);
+        return 2 * std::numbers::pi * std::numbers::pi / (size.x * size.y) *
+               std::sin(point.y / size.y * std::numbers::pi);
     const double radius = std::min(size.x, size.y) / 2, half = double(camera.fieldOfView) / 2;
     const double r = glm::length(2.0 * point - size) / 2 / radius;
     if (camera.projection == Projection::Equisolid) return std::pow(2 * std::sin(half / 2) / radius, 2);
@@ -309,7 +311,7 @@ double solidAngle(const Camera& camera, glm::dvec2 point, glm::dvec2 size) {
 TEST(CameraWide, SolidAnglesAndFurnaces) {
     // A sphere of radius 1 at distance 3 fills 2 pi (1 - sqrt(8) / 3). Filters move light between pixels and
     // lose none, at the panorama's seam and poles neither: the sphere lies there in turn.
-    const double truth = 2 * kPi * (1 - std::sqrt(8.0) / 3);
+    const double truth = 2 * std::numbers::pi * (1 - std::sqrt(8.0) / 3);
     for (const Wide& wide : kWide)
         for (const PixelFilter filter : {PixelFilter::Box, PixelFilter::Tent}) {
             const bool panorama = wide.projection == Projection::LatLong;

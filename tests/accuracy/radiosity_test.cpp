@@ -1,9 +1,8 @@
 // Radiosity on the device: closed forms, the cube's table, elimination against iteration, and path tracing.
 #include "tests/accuracy/path_scenes.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <fmt/format.h>
@@ -14,11 +13,6 @@
 
 namespace helio::test {
 namespace {
-
-Renderer& renderer() {
-    static Renderer one(deviceOptions());
-    return one;
-}
 
 RenderResult solve(const Scene& scene, std::uint32_t size, std::uint32_t patches, std::uint32_t samples = 4) {
     RenderOptions o;

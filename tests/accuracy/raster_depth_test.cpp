@@ -8,7 +8,7 @@
 namespace helio::test {
 namespace {
 
-constexpr std::uint32_t kWidth = 320, kHeight = 200;
+constexpr std::uint32_t kColumns = 320, kRows = 200;
 
 RasterTriangle triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t id) {
     RasterTriangle t;
@@ -55,8 +55,8 @@ double edgeDistance(const RasterTriangle& t, double x, double y) {
 std::uint64_t disagreements(const std::vector<std::uint64_t>& keys, const std::vector<RasterTriangle>& list,
                             std::uint64_t& hits) {
     std::uint64_t wrong = 0;
-    for (std::uint32_t y = 0; y < kHeight; ++y)
-        for (std::uint32_t x = 0; x < kWidth; ++x) {
+    for (std::uint32_t y = 0; y < kRows; ++y)
+        for (std::uint32_t x = 0; x < kColumns; ++x) {
             std::int64_t seen = -1;
             double nearest = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < list.size(); ++i)
@@ -65,7 +65,7 @@ std::uint64_t disagreements(const std::vector<std::uint64_t>& keys, const std::v
                     seen = std::int64_t(i);
                 }
             hits += seen >= 0;
-            const std::int64_t drawn = visibleTriangle(keys[y * kWidth + x]);
+            const std::int64_t drawn = visibleTriangle(keys[y * kColumns + x]);
             if (drawn == seen) continue;
             double edge = std::numeric_limits<double>::infinity();
             for (std::int64_t i : {seen, drawn})
@@ -76,8 +76,8 @@ std::uint64_t disagreements(const std::vector<std::uint64_t>& keys, const std::v
 }
 
 TEST(RasterAgreement, RaysSeeTheSameTriangles) {
-    const RasterView view = pixelView(kWidth, kHeight);
-    RasterRunner runner(kWidth, kHeight, 300);
+    const RasterView view = pixelView(kColumns, kRows);
+    RasterRunner runner(kColumns, kRows, 300);
     std::uint64_t wrong = 0, hits = 0;
     for (std::uint32_t seed = 0; seed < 4; ++seed) {
         Random random(100 + seed);
@@ -86,7 +86,7 @@ TEST(RasterAgreement, RaysSeeTheSameTriangles) {
             glm::vec3 v[3];
             const double size = std::pow(10.0, random.uniform(-2, 0.5)),
                          distance = std::pow(10.0, random.uniform(-1, 2));
-            const glm::dvec2 centre(random.uniform(0, kWidth), random.uniform(0, kHeight));
+            const glm::dvec2 centre(random.uniform(0, kColumns), random.uniform(0, kRows));
             for (auto& corner : v) {
                 const double d =
                     distance * (1.0 + size * random.uniform(-1, 1));  // behind the eye where size > 1
@@ -98,15 +98,15 @@ TEST(RasterAgreement, RaysSeeTheSameTriangles) {
         }
         wrong += disagreements(runner.run(view, list).keys, list, hits);
     }
-    std::printf("             %u pixels, %llu hit, %llu wrong\n", 4 * kWidth * kHeight,
+    std::printf("             %u pixels, %llu hit, %llu wrong\n", 4 * kColumns * kRows,
                 (unsigned long long)hits, (unsigned long long)wrong);
     EXPECT_EQ(wrong, 0u);
-    EXPECT_GT(hits, std::uint64_t(kWidth) * kHeight);
+    EXPECT_GT(hits, std::uint64_t(kColumns) * kRows);
 }
 
 TEST(RasterDepth, InterpenetratingTrianglesMeetOnTheExactLine) {
-    const RasterView view = pixelView(kWidth, kHeight);
-    RasterRunner runner(kWidth, kHeight, 2);
+    const RasterView view = pixelView(kColumns, kRows);
+    RasterRunner runner(kColumns, kRows, 2);
     Random random(20);
     std::uint64_t both = 0, wrong = 0, inBand = 0;
     for (int scene = 0; scene < 40; ++scene) {
@@ -117,7 +117,7 @@ TEST(RasterDepth, InterpenetratingTrianglesMeetOnTheExactLine) {
                 return atPixel(x, y, 5.0 * (1.0 + tilt * random.uniform(0, 1)));
             };
             list.push_back(
-                triangle(corner(-50, -50), corner(2.5 * kWidth, -50), corner(-50, 2.5 * kHeight), i));
+                triangle(corner(-50, -50), corner(2.5 * kColumns, -50), corner(-50, 2.5 * kRows), i));
         }
         // 1/distance is affine on the screen: fit both planes, in double.
         std::array<glm::dvec3, 2> plane;
@@ -128,8 +128,8 @@ TEST(RasterDepth, InterpenetratingTrianglesMeetOnTheExactLine) {
         }
         const glm::dvec3 difference = plane[0] - plane[1];
         const RasterResult result = runner.run(view, list);
-        for (std::uint32_t y = 0; y < kHeight; ++y)
-            for (std::uint32_t x = 0; x < kWidth; ++x) {
+        for (std::uint32_t y = 0; y < kRows; ++y)
+            for (std::uint32_t x = 0; x < kColumns; ++x) {
                 const double d = difference.x * (x + 0.5) + difference.y * (y + 0.5) + difference.z;
                 ++both;
                 // Far less than the 1/64 pixel that the agreement of the pipelines allows; and planes that
@@ -140,7 +140,7 @@ TEST(RasterDepth, InterpenetratingTrianglesMeetOnTheExactLine) {
                     ++inBand;
                     continue;
                 }
-                wrong += visibleTriangle(result.keys[y * kWidth + x]) != (d > 0 ? 0 : 1);
+                wrong += visibleTriangle(result.keys[y * kColumns + x]) != (d > 0 ? 0 : 1);
             }
     }
     std::printf("             %llu pixels, %llu in the band, %llu wrong\n", (unsigned long long)both,
@@ -150,8 +150,8 @@ TEST(RasterDepth, InterpenetratingTrianglesMeetOnTheExactLine) {
 }
 
 TEST(RasterDepth, ReversedDepthTellsNeighboursApartAtEveryDistance) {
-    const RasterView view = pixelView(kWidth, kHeight);
-    RasterRunner runner(kWidth, kHeight, 2);
+    const RasterView view = pixelView(kColumns, kRows);
+    RasterRunner runner(kColumns, kRows, 2);
     // Float32 reversed with an infinite far plane resolves a step of about z 2^-24 anywhere; 2^-22 must be
     // told.
     for (double distance = 0.01; distance < 1e7; distance *= 10) {
@@ -172,13 +172,13 @@ TEST(RasterDepth, FarFromTheOriginNothingChanges) {
     const glm::dvec3 forward = glm::normalize(glm::dvec3(0.3, -0.2, -1)),
                      across = glm::normalize(glm::cross(forward, glm::dvec3(0.1, 1, 0)));
     RasterView view;
-    view.width = kWidth;
-    view.height = kHeight;
+    view.width = kColumns;
+    view.height = kRows;
     view.rowW = forward;
-    view.rowX = 211.0 * across + 0.5 * kWidth * forward;
-    view.rowY = -211.0 * glm::cross(across, forward) + 0.5 * kHeight * forward;
+    view.rowX = 211.0 * across + 0.5 * kColumns * forward;
+    view.rowY = -211.0 * glm::cross(across, forward) + 0.5 * kRows * forward;
     view.depthOffset = 1e-3;
-    RasterRunner runner(kWidth, kHeight, 400);
+    RasterRunner runner(kColumns, kRows, 400);
     Random random(21);
     std::vector<RasterTriangle> list, moved;
     const glm::vec3 shift(1048576.0f, -1048576.0f, 524288.0f);
@@ -204,8 +204,8 @@ TEST(RasterDepth, OrthographicViews) {
     camera.ymag = 10;
     camera.znear = 0.5f;
     camera.zfar = 100;
-    const RasterView view = makeRasterView(glm::dmat4(1.0), camera, {kWidth, kHeight}, 0.5, 0.0);
-    RasterRunner runner(kWidth, kHeight, 300, {}, {}, true);
+    const RasterView view = makeRasterView(glm::dmat4(1.0), camera, {kColumns, kRows}, 0.5, 0.0);
+    RasterRunner runner(kColumns, kRows, 300, {}, {}, true);
     Random random(22);
     std::vector<RasterTriangle> list;
     for (std::uint32_t i = 0; i < 300; ++i) {
@@ -224,7 +224,7 @@ TEST(RasterDepth, OrthographicViews) {
     // Depth falls evenly from 1 at the near plane to 0 at zfar.
     const RasterResult one =
         runner.run(view, {triangle({-99, -99, -50.25f}, {99, -99, -50.25f}, {0, 99, -50.25f}, 0)});
-    EXPECT_FLOAT_EQ(std::bit_cast<float>(std::uint32_t(one.keys[kWidth * kHeight / 2] >> 32)), 0.5f);
+    EXPECT_FLOAT_EQ(std::bit_cast<float>(std::uint32_t(one.keys[kColumns * kRows / 2] >> 32)), 0.5f);
 }
 
 TEST(RasterCapabilities, ADeviceWithoutThemIsNamedWithWhatItLacks) {

@@ -1,9 +1,9 @@
 // What a scene may hold and how both pipelines meet it: cameras, texture coordinate sets, extents.
-#include "tests/support/device.hpp"
+
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/image.hpp>
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
@@ -14,11 +14,7 @@
 namespace helio {
 namespace {
 
-Renderer& renderer() {
-    // Closed before the shared device's listener reports, see tests/support/device.hpp.
-    static Renderer shared(test::deviceOptions());
-    return shared;
-}
+using test::renderer;
 
 RenderOptions small(Pipeline pipeline) {
     RenderOptions options;

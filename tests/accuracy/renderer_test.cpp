@@ -1,8 +1,8 @@
 // The renderer as an application uses it, on small pictures.
-#include "tests/support/device.hpp"
+
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/renderer.hpp>
 #include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
@@ -15,11 +15,7 @@
 namespace helio {
 namespace {
 
-Renderer& renderer() {
-    // Closed before the shared device's listener reports, see tests/support/device.hpp.
-    static Renderer shared(test::deviceOptions());
-    return shared;
-}
+using test::renderer;
 
 RenderOptions small(std::uint32_t samples, std::uint32_t size = 32) {
     RenderOptions options;

@@ -1,9 +1,8 @@
 // Russian roulette: the same mean at every chance, with the variance and the cost that theory gives.
 #include "tests/accuracy/path_scenes.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,11 +13,6 @@
 
 namespace helio::test {
 namespace {
-
-Renderer& renderer() {
-    static Renderer one(deviceOptions());
-    return one;
-}
 
 constexpr float kAlbedo = 0.25f;
 

@@ -1,8 +1,8 @@
 // Surfaces that let light through, in the raster pipeline: closed forms of layers in any order, and the path
 // tracer.
-#include "tests/support/device.hpp"
 
-#include <heliograph/renderer.hpp>
+#include "tests/support/renderer.hpp"
+
 #include <heliograph/verify.hpp>
 
 #include <gtest/gtest.h>
@@ -14,10 +14,7 @@
 namespace helio {
 namespace {
 
-Renderer& renderer() {
-    static Renderer shared(test::deviceOptions());
-    return shared;
-}
+using test::renderer;
 
 /** A glowing black rectangle over x and y from -1 to 1 whose z is `z` + `slope` x. */
 struct Sheet {

@@ -10,12 +10,11 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numbers>
 #include <tuple>
 
 namespace helio::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /** A texture of heights h(u, v) in 0..1 at the texels' centres. */
 void addHeights(Scene& scene, std::uint32_t width, std::uint32_t height,
@@ -47,7 +46,7 @@ Primitive patch(int cuts) {
     for (int i = 0; i <= cuts; ++i)
         for (int j = 0; j <= cuts; ++j) {
             const double u = double(j) / cuts, v = double(i) / cuts;
-            const double phi = u - 0.5, theta = kPi / 2 - 0.5 + v;
+            const double phi = u - 0.5, theta = std::numbers::pi / 2 - 0.5 + v;
             const glm::dvec3 n(std::sin(theta) * std::sin(phi), std::cos(theta),
                                std::sin(theta) * std::cos(phi));
             p.positions.emplace_back(n);
@@ -80,24 +79,17 @@ void addLights(Scene& scene) {
 }
 glm::dvec3 normalOf(const glm::vec4& color) {
     const glm::dmat3 rows = glm::transpose(glm::dmat3(kLights[0], kLights[1], kLights[2]));
-    return glm::inverse(rows) * (kPi * glm::dvec3(color));
-}
-
-RasterView frontView(std::uint32_t side, double half, double distance = 5) {
-    Camera camera;
-    camera.perspective = false;
-    camera.ymag = float(half);
-    glm::dmat4 place(1.0);
-    place[3] = {0, 0, distance, 1};
-    return makeRasterView(place, camera, {side, side}, 0.1 * distance, 2 * distance);
+    return glm::inverse(rows) * (std::numbers::pi * glm::dvec3(color));
 }
 
 double bumps(double u, double v) {
-    return 0.5 + 0.4 * std::sin(4 * kPi * u) * std::cos(2 * kPi * v + 0.3);
+    return 0.5 + 0.4 * std::sin(4 * std::numbers::pi * u) * std::cos(2 * std::numbers::pi * v + 0.3);
 }
 glm::dvec2 bumpSlopes(double u, double v) {
-    return {0.4 * 4 * kPi * std::cos(4 * kPi * u) * std::cos(2 * kPi * v + 0.3),
-            -0.4 * 2 * kPi * std::sin(4 * kPi * u) * std::sin(2 * kPi * v + 0.3)};
+    return {0.4 * 4 * std::numbers::pi * std::cos(4 * std::numbers::pi * u) *
+                std::cos(2 * std::numbers::pi * v + 0.3),
+            -0.4 * 2 * std::numbers::pi * std::sin(4 * std::numbers::pi * u) *
+                std::sin(2 * std::numbers::pi * v + 0.3)};
 }
 
 constexpr std::uint32_t kSide = 48;
@@ -118,7 +110,7 @@ double bumpError(std::uint32_t texels, double size) {
             const double px = 0.4 * ((x + 0.5) * 2 / kSide - 1), py = 0.4 * (1 - (y + 0.5) * 2 / kSide);
             const glm::dvec3 n(px, py, std::sqrt(1 - px * px - py * py));
             const double theta = std::acos(n.y), phi = std::atan2(n.x, n.z);
-            const glm::dvec2 slope = scale * bumpSlopes(phi + 0.5, theta - kPi / 2 + 0.5);
+            const glm::dvec2 slope = scale * bumpSlopes(phi + 0.5, theta - std::numbers::pi / 2 + 0.5);
             const glm::dvec3 east(std::cos(phi), 0, -std::sin(phi)), south = glm::cross(n, east) * -1.0;
             const glm::dvec3 expected =
                 glm::normalize(n - east * (slope.x / std::sin(theta)) - south * slope.y);
@@ -158,7 +150,8 @@ TEST(Bump, AFlatMapLeavesEveryBit) {
 /** A square of side 1 in the plane z = 0 with waves of height `a` along x. */
 Scene waves(double a) {
     Scene scene;
-    addHeights(scene, 1024, 1, [](double u, double) { return 0.5 + 0.5 * std::sin(2 * kPi * u); });
+    addHeights(scene, 1024, 1,
+               [](double u, double) { return 0.5 + 0.5 * std::sin(2 * std::numbers::pi * u); });
     scene.textures[0].wrapU = Wrap::Repeat;
     Primitive p = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
     p.texcoords = {{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
@@ -181,8 +174,9 @@ double area(const Scene& scene) {
 
 TEST(Displacement, AreaIsTheEllipticIntegral) {
     // z = a/2 sin(2 pi x): the arc's length is 2/pi sqrt(1 + k^2) E(k / sqrt(1 + k^2)), k = pi a.
-    const double a = 0.3, k = kPi * a;
-    const double exact = 2 / kPi * std::sqrt(1 + k * k) * std::comp_ellint_2(k / std::sqrt(1 + k * k));
+    const double a = 0.3, k = std::numbers::pi * a;
+    const double exact =
+        2 / std::numbers::pi * std::sqrt(1 + k * k) * std::comp_ellint_2(k / std::sqrt(1 + k * k));
     double last = 0;
     for (std::uint32_t cuts : {8u, 16u, 32u}) {
         Scene scene = waves(a);
@@ -209,7 +203,7 @@ double depthError(std::uint32_t cuts) {
     double worst = 0;
     for (std::uint32_t y = 0; y < 64; ++y)
         for (std::uint32_t x = 0; x < 64; ++x) {
-            const double z = 0.3 * (0.5 + 0.5 * std::sin(2 * kPi * (x + 0.5) / 64));
+            const double z = 0.3 * (0.5 + 0.5 * std::sin(2 * std::numbers::pi * (x + 0.5) / 64));
             worst = std::max(worst, std::abs(double(image.albedoDepth[image.at(x, y)].w) - (5 - z)));
         }
     return worst;
@@ -243,7 +237,8 @@ TEST(Displacement, ChangesTheOutlineAndBumpsDoNot) {
         for (std::uint32_t y = 0; y < side; ++y)
             for (std::uint32_t x = 0; x < side; ++x) {
                 const double row = 0.5 - (y + 0.5) / side;
-                const double z = isMoved ? 0.3 * (0.5 + 0.5 * std::sin(2 * kPi * (x + 0.5) / side)) : 0;
+                const double z =
+                    isMoved ? 0.3 * (0.5 + 0.5 * std::sin(2 * std::numbers::pi * (x + 0.5) / side)) : 0;
                 const double middle = z * up.z, half = 0.5 * up.y;
                 const bool wanted = std::abs(row - middle) < half;
                 if (std::abs(std::abs(row - middle) - half) < 0.1 / side) continue;  // at the very edge

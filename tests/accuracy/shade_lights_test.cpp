@@ -7,14 +7,13 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <random>
 
 namespace helio::test {
 namespace {
 
 using namespace verify;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Primitive floorQuad(float half) {
     return quad({-half, 0, half}, {half, 0, half}, {half, 0, -half}, {-half, 0, -half});
@@ -37,9 +36,9 @@ TEST(ShadeLights, SquareOverTheFloor) {
         addPrimitive(scene, ceilingQuad(side, side, 1), lambert(glm::vec3(0), glm::vec3(1, 2, 4)));
         const ShadedImage image = shade(scene, downView({0, 0.5, 0}, 3, 3, 1e6));
         const glm::vec4 c = image.color[image.at(1, 1)];
-        EXPECT_NEAR(c.r * kPi / 0.5 / expected, 1.0, 1e-6);
-        EXPECT_NEAR(c.g * kPi / 0.5 / expected, 1.0, 1e-6);
-        EXPECT_NEAR(c.b * kPi / 4.0 / expected, 1.0, 1e-6);
+        EXPECT_NEAR(c.r * std::numbers::pi / 0.5 / expected, 1.0, 1e-6);
+        EXPECT_NEAR(c.g * std::numbers::pi / 0.5 / expected, 1.0, 1e-6);
+        EXPECT_NEAR(c.b * std::numbers::pi / 4.0 / expected, 1.0, 1e-6);
         EXPECT_NEAR(irradianceCentredRectangle(side, side, 1), expected, 1e-11);
     }
 }
@@ -60,8 +59,10 @@ TEST(ShadeLights, RectanglesAnywhereAgainstTheClosedForm) {
                 const Vector corners[4] = {{-x0, y0, -z0}, {x0, y0, -z0}, {x0, y0, z0}, {-x0, y0, z0}};
                 const double expected = std::abs(irradiancePolygon({px, 0, pz}, {0, 1, 0}, corners));
                 // The sum's terms are of the order of 1, whatever is left of them.
-                worst = std::max(worst, std::abs(red(image, x, y) * kPi - expected) / (expected + 0.1));
-                if (a * b < 1e-3) small = std::max(small, std::abs(red(image, x, y) * kPi / expected - 1.0));
+                worst = std::max(worst,
+                                 std::abs(red(image, x, y) * std::numbers::pi - expected) / (expected + 0.1));
+                if (a * b < 1e-3)
+                    small = std::max(small, std::abs(red(image, x, y) * std::numbers::pi / expected - 1.0));
             }
     }
     std::printf("             worst error over E + 0.1: %.2e; relative, of a small rectangle: %.2e\n", worst,
@@ -97,7 +98,7 @@ TEST(ShadeLights, CutAtTheHorizonAndOneSided) {
                     sum += std::max(glm::dot(d, glm::dvec3(normal)), 0.0) * std::max(-glm::dot(d, n), 0.0) /
                            (squared * squared);
                 }
-            const double expected = 2.0 * sum * area / (parts * parts) / kPi;
+            const double expected = 2.0 * sum * area / (parts * parts) / std::numbers::pi;
             EXPECT_GT(expected, 0.01);
             worst = std::max(worst, std::abs(red(image, x, y) / expected - 1.0));
         }
@@ -171,7 +172,8 @@ TEST(ShadeLights, PointSpotAndDirectional) {
                     if (range > 0 && type != PunctualLight::Type::Directional)
                         expected *= std::clamp(1.0 - std::pow(r2 / double(range * range), 2), 0.0, 1.0);
                     const glm::vec4 c = image.color[image.at(x, y)];
-                    EXPECT_NEAR(c.r, expected * 0.5 / kPi, 2e-6) << int(type) << " " << x << " " << y;
+                    EXPECT_NEAR(c.r, expected * 0.5 / std::numbers::pi, 2e-6)
+                        << int(type) << " " << x << " " << y;
                     EXPECT_NEAR(c.g, c.r * 2 / 3, 1e-6);
                 }
         }

@@ -8,16 +8,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <random>
 
 namespace helio::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 const Preamble kModel = {"#define BLINN_PHONG 1", "shaders/raster/blinn_phong.glsl"};
 
 double norm(double p) {
-    return (p + 2) * (p + 4) / (8 * kPi * (std::exp2(-p / 2) + p));
+    return (p + 2) * (p + 4) / (8 * std::numbers::pi * (std::exp2(-p / 2) + p));
 }
 
 /** The model in double: on kd / pi and on ks. */
@@ -109,7 +109,7 @@ TEST(BlinnPhong, ReflectsNoMoreThanItsFactor) {
         const std::vector<float> gloss = runOnDevice<float>(kModel, "blinnPhongLight(a, b, a, c).gloss", n, l,
                                                             std::vector<float>(count, p));
         double sum = 0;
-        for (float g : gloss) sum += double(g) * 2 * kPi / count;
+        for (float g : gloss) sum += double(g) * 2 * std::numbers::pi / count;
         EXPECT_NEAR(sum, 1, 3e-5) << p;
     }
 }
@@ -131,16 +131,6 @@ constexpr float kAmbient = 0.125f;
 void addSky(Scene& scene, const glm::dvec3& towards) {
     addDirectional(scene, towards);
     scene.environment = Environment{glm::vec3(kAmbient), -1};
-}
-
-/** The square of `half` about the origin along -z, +x right and +y up, without perspective. */
-RasterView frontView(std::uint32_t side, double half) {
-    Camera camera;
-    camera.perspective = false;
-    camera.ymag = float(half);
-    glm::dmat4 place(1.0);
-    place[3] = {0, 0, 5, 1};
-    return makeRasterView(place, camera, {side, side}, 0.5, 10);
 }
 
 Material glossy(double p) {
@@ -171,7 +161,8 @@ TEST(Rates, AreAllTheSameOnAPlaneUnderDistantLight) {
     const RasterView view = frontView(16, 1);
     const Factors f = factorsOf(glossy(20));
     const glm::dvec2 light = model({0, 0, 1}, towards, {0, 0, 1}, f.p);
-    const glm::dvec3 wanted = f.kd * (light.x / kPi) + f.ks * light.y + (f.kd + f.ks) * double(kAmbient);
+    const glm::dvec3 wanted =
+        f.kd * (light.x / std::numbers::pi) + f.ks * light.y + (f.kd + f.ks) * double(kAmbient);
     for (Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
         const ShadedImage image = shade(scene, view, false, shading);
         for (const glm::vec4& c : image.color)
@@ -212,8 +203,8 @@ double ballError(int level, Shading shading) {
             const double px = (x + 0.5) * 2 / side - 1, py = 1 - (y + 0.5) * 2 / side, r2 = px * px + py * py;
             if (r2 > 0.75 * 0.75) continue;
             const glm::dvec2 light = model({px, py, std::sqrt(1 - r2)}, towards, {0, 0, 1}, f.p);
-            const double wanted =
-                f.kd.g * (light.x / kPi + double(kAmbient)) + f.ks.g * (light.y + double(kAmbient));
+            const double wanted = f.kd.g * (light.x / std::numbers::pi + double(kAmbient)) +
+                                  f.ks.g * (light.y + double(kAmbient));
             sum += std::abs(double(image.color[image.at(x, y)].g) - wanted);
             ++count;
         }
@@ -247,7 +238,7 @@ TEST(Rates, AHighlightInsideATriangleIsMissedByCorners) {
     addSky(scene, {0, 0, 1});
     const RasterView view = frontView(64, 2.2);
     const Factors f = factorsOf(m);
-    const double peak = f.kd.g / kPi + f.ks.g * norm(f.p);  // n = l = v = h
+    const double peak = f.kd.g / std::numbers::pi + f.ks.g * norm(f.p);  // n = l = v = h
     const double ambient = (f.kd.g + f.ks.g) * double(kAmbient);
     const auto brightest = [&](Shading shading) {
         const ShadedImage image = shade(scene, view, false, shading);
@@ -261,7 +252,7 @@ TEST(Rates, AHighlightInsideATriangleIsMissedByCorners) {
     double corners = 0;
     for (const glm::vec3& n : p.normals) {
         const glm::dvec2 light = model(n, {0, 0, 1}, {0, 0, 1}, f.p);
-        corners = std::max(corners, f.kd.g * light.x / kPi + f.ks.g * light.y);
+        corners = std::max(corners, f.kd.g * light.x / std::numbers::pi + f.ks.g * light.y);
     }
     EXPECT_LE(brightest(Shading::Gouraud), corners * (1 + 1e-5));
     EXPECT_LT(corners, 0.2 * peak);
@@ -278,8 +269,8 @@ TEST(Rates, DiffuseScenesInAnyOrderOfTriangles) {
     double most = 0;
     for (std::size_t i = 0; i < image.color.size(); ++i)
         if (image.ids[i].x >= 0) most = std::max(most, double(image.color[i].g));
-    EXPECT_LE(most, 0.5 * (1 / kPi + double(kAmbient)) * (1 + 1e-6));
-    EXPECT_GT(most, 0.95 * 0.5 * (1 / kPi + double(kAmbient)));
+    EXPECT_LE(most, 0.5 * (1 / std::numbers::pi + double(kAmbient)) * (1 + 1e-6));
+    EXPECT_GT(most, 0.95 * 0.5 * (1 / std::numbers::pi + double(kAmbient)));
 }
 
 }  // namespace

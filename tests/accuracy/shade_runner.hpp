@@ -29,8 +29,8 @@ struct ShadedImage {
 inline ShadedImage shade(const Scene& scene, const RasterView& view, bool tree = false,
                          Shading shading = Shading::Material) {
     DeviceScene deviceScene(device(), scene, {.tree = tree});
-    ShadePipeline pipeline(device(), deviceScene, {}, {.kind = Shadows::Kind::None},
-                           TextureFilter::Trilinear, 0, shading);
+    ShadePipeline pipeline(device(), deviceScene, {}, {.kind = Shadows::Kind::None}, TextureFilter::Trilinear,
+                           0, shading);
     if (pipeline.mips().needed()) {
         Graph graph(device());
         pipeline.declareMips(graph);
@@ -50,6 +50,16 @@ inline ShadedImage shade(const Scene& scene, const RasterView& view, bool tree =
     const Execution done = plan.execute();
     return {view.width,        color.wait(done), albedo.wait(done),
             normal.wait(done), ids.wait(done),   keys.wait(done)};
+}
+
+/** The square of `half` about the origin along -z, +x right and +y up, without perspective. */
+inline RasterView frontView(std::uint32_t side, double half, double distance = 5) {
+    Camera camera;
+    camera.perspective = false;
+    camera.ymag = float(half);
+    glm::dmat4 place(1.0);
+    place[3] = {0, 0, distance, 1};
+    return makeRasterView(place, camera, {side, side}, 0.1 * distance, 2 * distance);
 }
 
 /** A material that is exactly Lambertian. */

@@ -17,7 +17,7 @@ seconds=$(awk -v m="$minutes" 'BEGIN { s = int(m * 60 + 0.5); if (s < 1) exit 1;
     fail "'$minutes' is no number of minutes"
 
 cmake/install-packages.sh build test
-cmake -S tests/fuzz -B "$build" -G Ninja --log-level=WARNING -DCMAKE_CXX_COMPILER=clang++-14 >/dev/null ||
+cmake -S tests/fuzz -B "$build" -G Ninja --log-level=WARNING -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_COMPILER=clang++-14 >/dev/null ||
     fail "CMake could not configure $build; its messages are above"
 cmake --build "$build" --parallel "$jobs" || fail "the build in $build failed; the messages are above"
 rm -rf "$build/seeds"

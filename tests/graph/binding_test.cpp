@@ -11,7 +11,7 @@
 #include <cmath>
 #include <iostream>
 
-namespace helio {
+namespace helio::binding_test {
 namespace {
 
 using test::device;
@@ -300,4 +300,4 @@ TEST(Bindings, SpecializationConstantsByNameAndLocalSize) {
 }
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::binding_test

@@ -1,11 +1,10 @@
 // Scenes at the ends of what numbers can say, each with an answer that is known there.
 #include "tests/accuracy/path_scenes.hpp"
 #include "tests/stability/measure.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/image.hpp>
-#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,12 +17,6 @@ namespace helio::test {
 namespace {
 
 constexpr float kBelowOne = 0x1.fffffep-1f;
-
-Renderer& renderer() {
-    // Closed before the shared device's listener reports, see tests/support/device.hpp.
-    static Renderer shared(deviceOptions());
-    return shared;
-}
 
 RenderOptions options(std::uint32_t size = 8, std::uint32_t samples = 64) {
     return independentSamples(size, samples);

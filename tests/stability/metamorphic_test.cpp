@@ -4,10 +4,9 @@
 #include "tests/accuracy/path_scenes.hpp"
 #include "tests/stability/measure.hpp"
 #include "tests/stability/variants.hpp"
-#include "tests/support/device.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/image.hpp>
-#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -17,12 +16,6 @@
 
 namespace helio::test {
 namespace {
-
-Renderer& renderer() {
-    // Closed before the shared device's listener reports, see tests/support/device.hpp.
-    static Renderer shared(deviceOptions());
-    return shared;
-}
 
 constexpr std::uint32_t kSize = 24;
 constexpr Pipeline kBoth[] = {Pipeline::Path, Pipeline::Raster};

@@ -17,7 +17,6 @@ namespace helio {
 namespace {
 
 using partition::Input;
-using partition::Node;
 using partition::Tree;
 
 using Tetrahedron = std::array<glm::dvec3, 4>;
@@ -59,7 +58,7 @@ std::array<std::vector<Tetrahedron>, 2> cut(const Tetrahedron& t, const glm::dve
 
 /** Volume of all leaves below a node that holds these tetrahedra. */
 double leafVolume(const Tree& tree, std::uint32_t index, const std::vector<Tetrahedron>& cell, bool octree) {
-    const Node& node = tree.nodes[index];
+    const partition::Node& node = tree.nodes[index];
     if (node.firstChild == 0) {
         double sum = 0;
         for (const Tetrahedron& t : cell) sum += volume(t);
@@ -105,8 +104,8 @@ std::vector<Tetrahedron> tetrahedra(const partition::Bounds& box) {
     return result;
 }
 
-const Node& leafAt(const Tree& tree, const glm::vec3& p, bool octree) {
-    const Node* node = &tree.nodes[0];
+const partition::Node& leafAt(const Tree& tree, const glm::vec3& p, bool octree) {
+    const partition::Node* node = &tree.nodes[0];
     while (node->firstChild != 0) {
         std::uint32_t child = 0;
         if (octree)
@@ -149,7 +148,7 @@ TEST(Comparators, CellsFillTheRootAndReferToAllTrianglesInThem) {
                                    Named{"bsp", partition::buildBsp(input), false}}) {
             SCOPED_TRACE(built.name);
             std::size_t leaves = 0, references = 0, largest = 0;
-            for (const Node& node : built.tree.nodes) {
+            for (const partition::Node& node : built.tree.nodes) {
                 if (node.firstChild != 0) continue;
                 ++leaves;
                 references += node.references.size();

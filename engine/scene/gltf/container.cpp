@@ -22,11 +22,11 @@ std::uint32_t littleEndian32(std::span<const std::byte> bytes, std::size_t at) {
 
 void parseInto(Container& container, std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    Json json = readJson(container.file, text);
-    container.document = std::move(json.document);
-    container.documentBytes = json.bytes;
+    Json read = readJson(container.file, text);
+    container.document = std::move(read.document);
+    container.documentBytes = read.bytes;
     container.textBytes = text.size();
-    for (const LongString& one : json.longStrings)
+    for (const LongString& one : read.longStrings)
         container.longStrings.push_back(text.substr(one.begin, one.end - one.begin));
 }
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::brushed {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -83,4 +83,4 @@ Scene makeBrushed() {
 const RegisterSample registered{"brushed", makeBrushed};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::brushed

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::carved {
 namespace {
 
 constexpr float pi = 3.14159265f;
@@ -97,4 +97,4 @@ Scene makeCarved() {
 const RegisterSample sample{"carved", makeCarved};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::carved

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::caustic {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -75,4 +75,4 @@ Scene makeCaustic() {
 const RegisterSample registered{"caustic", makeCaustic};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::caustic

@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::cornell {
 namespace {
 
 using Quad = std::array<glm::vec3, 4>;
@@ -107,4 +107,4 @@ Scene makeCornell() {
 const RegisterSample registered{"cornell", makeCornell};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::cornell

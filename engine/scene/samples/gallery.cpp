@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace helio {
+namespace helio::samples::gallery {
 namespace {
 
 Material named(const char* name, glm::vec3 color, float metallic, float roughness) {
@@ -110,4 +110,4 @@ Scene makeGallery() {
 const RegisterSample registered{"gallery", makeGallery};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::gallery

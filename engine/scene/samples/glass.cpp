@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace helio {
+namespace helio::samples::glass {
 namespace {
 
 void addSphere(Scene& scene, Material material, glm::vec3 centre) {
@@ -43,4 +43,4 @@ Scene makeGlass() {
 const RegisterSample registered{"glass", makeGlass};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::glass

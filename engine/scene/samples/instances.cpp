@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::instances {
 namespace {
 
 constexpr int count = 4181;  // a Fibonacci number
@@ -86,4 +86,4 @@ Scene makeInstances() {
 const RegisterSample registered{"instances", makeInstances};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::instances

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::lenses {
 namespace {
 
 /** Distance of the ball in the middle from the cameras. */
@@ -88,4 +88,4 @@ Scene makeLenses() {
 const RegisterSample registered{"lenses", makeLenses};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::lenses

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::lights500 {
 namespace {
 
 constexpr int side = 316;  // squares along an edge of the ground: 2 * 316^2 triangles
@@ -75,4 +75,4 @@ Scene makeLights500() {
 const RegisterSample registered{"lights500", makeLights500};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::lights500

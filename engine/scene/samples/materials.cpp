@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::materials {
 namespace {
 
 constexpr int columns = 7;
@@ -115,4 +115,4 @@ Scene makeMaterials() {
 const RegisterSample registered{"materials", makeMaterials};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::materials

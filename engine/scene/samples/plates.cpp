@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::plates {
 namespace {
 
 struct Plate {
@@ -62,4 +62,4 @@ Scene makePlates() {
 const RegisterSample registered{"plates", makePlates};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::plates

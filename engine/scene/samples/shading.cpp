@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace helio {
+namespace helio::samples::shading {
 namespace {
 
 Scene makeShading() {
@@ -56,4 +56,4 @@ Scene makeShading() {
 const RegisterSample sample{"shading", makeShading};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::shading

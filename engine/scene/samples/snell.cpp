@@ -9,7 +9,7 @@
 #include <array>
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::snell {
 namespace {
 
 Scene makeSnell() {
@@ -80,4 +80,4 @@ Scene makeSnell() {
 const RegisterSample registered{"snell", makeSnell};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::snell

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace helio {
+namespace helio::samples::terrain {
 namespace {
 
 constexpr int cells = 320;
@@ -275,4 +275,4 @@ Scene makeTerrain() {
 const RegisterSample registered{"terrain", makeTerrain};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::terrain

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace helio {
+namespace helio::samples::wheel {
 namespace {
 
 constexpr float pi = 3.14159265f;
@@ -80,4 +80,4 @@ Scene makeWheel() {
 const RegisterSample registered{"wheel", makeWheel};
 
 }  // namespace
-}  // namespace helio
+}  // namespace helio::samples::wheel

@@ -130,12 +130,13 @@ void addTextures(std::vector<CorpusFile>& files) {
                          EXPECT_EQ(use.transform * glm::vec3(1, 1, 1), glm::vec3(2.5f, 4.25f, 1));
                      }});
 
-    GltfDocument webp = withExtension("KHR_materials_unlit", "{}");
-    use(webp, "EXT_texture_webp", true);
-    webp.doc["images"][0] = {{"bufferView", webp.addView(webpOfFourTexels())}, {"mimeType", "image/webp"}};
-    webp.doc["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
-    webp.doc["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    files.push_back({"EXT_texture_webp", webp, [](const Scene& scene) {
+    GltfDocument fromWebp = withExtension("KHR_materials_unlit", "{}");
+    use(fromWebp, "EXT_texture_webp", true);
+    fromWebp.doc["images"][0] = {{"bufferView", fromWebp.addView(webpOfFourTexels())},
+                                 {"mimeType", "image/webp"}};
+    fromWebp.doc["textures"][0] = {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}};
+    fromWebp.doc["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    files.push_back({"EXT_texture_webp", fromWebp, [](const Scene& scene) {
                          expectTexture(scene, scene.materials.at(0).baseColorTexture);
                      }});
 
