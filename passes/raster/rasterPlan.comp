@@ -12,8 +12,8 @@ uint groups(uint invocations) { return (invocations + 63u) / 64u; }
 void main() {
     uint records = state.largeCount + CLIP_PARTS * state.clippedCount;
     state.recordCount = records;
-    // 8,192 cells also bounds the loops over cells.
-    state.maxCells = min(push.capacity / max(records, 1u), 8192u);
+    // 64 cells also bounds the loops over cells, in which the longest holds up its neighbours.
+    state.maxCells = min(push.capacity / max(records, 1u), 64u);
     state.largeGroups[0] = groups(state.largeCount);
     state.clipGroups[0] = groups(state.clippedCount);
     state.fillGroups[0] = groups(records);

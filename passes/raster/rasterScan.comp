@@ -15,6 +15,9 @@ layout(set = 0, binding = 2, std430) writeonly buffer uStarts { uvec2 starts[]; 
 layout(set = 0, binding = 3, std430) buffer uCounters { uint64_t counters[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer uTiles { uint tiles[]; };
 
+layout(constant_id = 126) const uint GROUP_TILES = 1u;  ///< tiles that a workgroup of the tile kernel draws
+layout(constant_id = 125) const bool MAY_START_FRESH = false;  ///< this is the image's first batch
+
 const int LANES = 256;
 shared uint sums[LANES];
 shared uint listed;
@@ -70,11 +73,14 @@ void main() {
     }
     if (lane == 0) {
         state.tileCount = listed;
-        state.tileGroups[0] = min(listed, TILE_ROW);
-        state.tileGroups[1] = (listed + TILE_ROW - 1u) / TILE_ROW;
-        state.tileGroups[2] = 1u;
-        state.moreGroups[0] = state.tileGroups[0];
-        state.moreGroups[1] = state.tileGroups[1];
+        uint groups = (listed + GROUP_TILES - 1u) / GROUP_TILES;
+        bool fresh = MAY_START_FRESH && state.smallCount == 0u;
+        state.freshGroups[0] = state.tileGroups[0] = min(groups, TILE_ROW);
+        state.freshGroups[1] = state.tileGroups[1] = (groups + TILE_ROW - 1u) / TILE_ROW;
+        state.freshGroups[2] = fresh ? 1u : 0u;
+        state.tileGroups[2] = fresh ? 0u : 1u;
+        state.moreGroups[0] = min(listed, TILE_ROW);
+        state.moreGroups[1] = (listed + TILE_ROW - 1u) / TILE_ROW;
         state.moreGroups[2] = max((sums[0] + SEGMENT - 1u) / SEGMENT, 1u) - 1u;
     }
 }

@@ -27,7 +27,7 @@ layout(set = 0, binding = 7) uniform usamplerBuffer uLimit;  ///< what is not be
 // A small triangle covers at most SMALL x SMALL pixels' centres; SMALL_EXTENT keeps its edge functions in 32 bits.
 const int SMALL = 8;
 const int SMALL_EXTENT = 8192;
-const uint PER_THREAD = 4u;
+const uint PER_THREAD = 8u;
 
 shared uint packed[4];
 
@@ -45,6 +45,7 @@ void main() {
     double width = double(size.x), height = double(size.y);
     uint outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
          clippedCount = 0u, visited = 0u, covered = 0u;
+    uint tiledBits = 0u, clippedBits = 0u;  // of this invocation's triangles
     [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
         uint index = gl_WorkGroupID.x * (64u * PER_THREAD) + k * 64u + lane;
         bool valid = index < push.count;
@@ -66,8 +67,7 @@ void main() {
         valid = valid && !back;
 
         bool clip = valid && (beyondGuardBand(a) || beyondGuardBand(b) || beyondGuardBand(c) || least < 0.0LF);
-        clippedCount += uint(clip);
-        if (clip) clipped[atomicAdd(state.clippedCount, 1u)] = t;
+        clippedBits |= uint(clip) << k;
         valid = valid && !clip;
 
         ivec2 p = snap(a.x, a.y, a.w), q = snap(b.x, b.y, b.w), r = snap(c.x, c.y, c.w);
@@ -81,8 +81,7 @@ void main() {
         ivec2 extent = max(p, max(q, r)) - min(p, min(q, r));
         bool small = max(cells.x, cells.y) <= SMALL && max(extent.x, extent.y) <= SMALL_EXTENT;
         bool tiled = valid && !small;
-        largeCount += uint(tiled);
-        if (tiled) large[atomicAdd(state.largeCount, 1u)] = t;
+        tiledBits |= uint(tiled) << k;
 
         valid = valid && small;
         smallCount += uint(valid);
@@ -105,9 +104,13 @@ void main() {
         for (int y = 0; y < rows; ++y) {
             uint outsideRow = 0u;
             ivec3 edge = e;
-            [[unroll]] for (int x = 0; x < SMALL; ++x) {
-                outsideRow |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
-                edge += right;
+            for (int first = 0; first < width_; first += 4) {
+                uint outside4 = 0u;
+                [[unroll]] for (int x = 0; x < 4; ++x) {
+                    outside4 |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
+                    edge += right;
+                }
+                outsideRow |= outside4 << first;
             }
             coverage |= uint64_t(~outsideRow & inRow) << (8 * y);
             e += down;
@@ -135,8 +138,18 @@ void main() {
         }
     }
 
-    // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 256
-    // triangles, which 10 bits hold, and tests at most 2^14 pixels a lane in 2^6 lanes.
+    // Lists last, and once: an atomic's code and a store's cost as much where every invocation is masked out.
+    uint firstOwn = push.first + gl_WorkGroupID.x * (64u * PER_THREAD) + lane;
+    largeCount = bitCount(tiledBits);
+    uint at = 0u;
+    if (tiledBits != 0u) at = atomicAdd(state.largeCount, largeCount);
+    for (; tiledBits != 0u; tiledBits &= tiledBits - 1u) large[at++] = firstOwn + 64u * uint(findLSB(tiledBits));
+    clippedCount = bitCount(clippedBits);
+    if (clippedBits != 0u) at = atomicAdd(state.clippedCount, clippedCount);
+    for (; clippedBits != 0u; clippedBits &= clippedBits - 1u) clipped[at++] = firstOwn + 64u * uint(findLSB(clippedBits));
+
+    // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 512
+    // triangles, which 10 bits hold, and tests at most 2^9 pixels a lane in 2^6 lanes.
     uvec4 sums = subgroupAdd(uvec4(outsideCount | backCount << 10 | emptyCount << 20,
                                    smallCount | largeCount << 10 | clippedCount << 20, visited, covered));
     if (subgroupElect()) {
@@ -152,6 +165,7 @@ void main() {
     } else if (lane <= 6u) {
         uint value = packed[(lane - 1u) / 3u] >> (10u * ((lane - 1u) % 3u)) & 1023u;
         atomicAdd(counters[COUNT_OUTSIDE + int(lane) - 1], uint64_t(value));
+        if (COUNT_OUTSIDE + int(lane) - 1 == COUNT_SMALL) atomicAdd(state.smallCount, value);
     } else if (lane <= 8u) {
         atomicAdd(counters[COUNT_SMALL_VISITED + int(lane) - 7], uint64_t(packed[lane - 5u]));
     }

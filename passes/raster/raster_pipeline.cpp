@@ -18,10 +18,11 @@ namespace {
 constexpr int kLevels = 6;
 constexpr std::uint32_t kClipParts = 6;
 constexpr std::uint32_t kRecordBytes = 64;
-constexpr std::uint64_t kStateBytes = 80;
+constexpr std::uint64_t kStateBytes = 96;
 constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52,
-                        kMoreGroups = 64;
-constexpr std::uint32_t kSetupTriangles = 256;  // of a workgroup of set-up
+                        kMoreGroups = 64, kFreshGroups = 80;
+constexpr std::uint32_t kTallTiles = 4;         // of a workgroup of rasterTileTall
+constexpr std::uint32_t kSetupTriangles = 512;  // of a workgroup of set-up
 
 std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
     std::uint64_t cells = 0;
@@ -158,7 +159,12 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
             .modifies({{"uCounts", counts}, {"uCounters", target.counters}})
             .indirect(state)
             .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
-        graph.compute("raster.scan", shaders::rasterScan)
+        const bool paired = width % 2 == 0;  // two keys at a time
+        const bool tall = options_.stripRows == 8;
+        ComputeOptions grouped;
+        grouped.spec["GROUP_TILES"] = paired && tall ? kTallTiles : 1u;
+        grouped.spec["MAY_START_FRESH"] = paired && first == 0;
+        graph.compute("raster.scan", shaders::rasterScan, grouped)
             .reads({{"uCounts", counts}})
             .overwrites({{"uStarts", starts}, {"uTiles", tiles}})
             .modifies({{"uState", state}, {"uCounters", target.counters}})
@@ -174,22 +180,31 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
                                             {"uStarts", starts, Format::RG32UI},
                                             {"uTiles", tiles, Format::R32UI},
                                             {"uState", state, Format::R32UI}};
-        const bool paired = width % 2 == 0;  // two keys at a time
-        const Kernel& tileKernel = options_.stripRows == 8 ? shaders::rasterTileTall : shaders::rasterTile;
-        Pass tile = paired ? graph.compute("raster.tile", kernel(tileKernel), projection)
-                           : graph.compute("raster.tile", kernel(shaders::rasterTileMore), tiled(0));
-        tile.reads(lists)
-            .reads(limit)
-            .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
-            .indirect(state)
-            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kTileGroups); });
-        if (paired) tile.modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
-        graph.compute("raster.tileMore", kernel(shaders::rasterTileMore), tiled(1))
-            .reads(lists)
-            .reads(limit)
-            .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
-            .indirect(state)
-            .record([push, state](Commands& c) { c.push(push()).dispatchIndirect(state, kMoreGroups); });
+        const Kernel& tileKernel = tall ? shaders::rasterTileTall : shaders::rasterTile;
+        const auto drawTiles = [&](const char* name, const Kernel& plain, const ComputeOptions& options,
+                                   std::uint64_t groups) {
+            return graph.compute(name, kernel(plain), options)
+                .reads(lists)
+                .reads(limit)
+                .modifies({{"uVisibility", target.visibility, window}, {"uCounters", target.counters}})
+                .indirect(state)
+                .record(
+                    [push, state, groups](Commands& c) { c.push(push()).dispatchIndirect(state, groups); });
+        };
+        // Where nothing has been drawn yet, tiles need not read what they write over. One of the two has no
+        // workgroups: rasterScan.comp.
+        const auto drawPaired = [&](const char* name, bool fresh, std::uint64_t groups) {
+            ComputeOptions options = projection;
+            options.spec["FRESH"] = fresh;
+            drawTiles(name, tileKernel, options, groups)
+                .modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
+        };
+        if (paired && first == 0) drawPaired("raster.tileFresh", true, kFreshGroups);
+        if (paired)
+            drawPaired("raster.tile", false, kTileGroups);
+        else
+            drawTiles("raster.tile", shaders::rasterTileMore, tiled(0), kTileGroups);
+        drawTiles("raster.tileMore", shaders::rasterTileMore, tiled(1), kMoreGroups);
     }
 }
 

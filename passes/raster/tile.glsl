@@ -12,9 +12,13 @@
 layout(constant_id = 123) const uint FIRST_SEGMENT = 1u;
 #else
 const uint FIRST_SEGMENT = 0u;
+layout(constant_id = 125) const bool FRESH = false;  ///< nothing has been drawn before: all keys are 0
 #endif
-const int LANES = 128 / ROWS;  // 8 pairs of columns, 16 / ROWS strips
-layout(local_size_x = 128 / ROWS) in;
+#ifndef TILES
+#define TILES 1  // of a workgroup; more where its subgroups are no larger than what a tile needs
+#endif
+const int LANES = 128 / ROWS;  // of a tile: 8 pairs of columns, 16 / ROWS strips
+layout(local_size_x = 128 / ROWS * TILES) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer uRecords;
 layout(set = 0, binding = 1) uniform usamplerBuffer uEntries;
 layout(set = 0, binding = 2) uniform usamplerBuffer uStarts;
@@ -93,7 +97,8 @@ void store(ivec2 pixel, ivec2 size, u64vec2 best) {
     if (hit0) atomicMax(visibility[index], best.x);
     if (hit1) atomicMax(visibility[index + 1], best.y);
 #else
-    uvec4 seen = imageLoad(uVisibilityTexels, inside0 ? index >> 1 : 0);
+    uvec4 seen = uvec4(0u);
+    if (!FRESH) seen = imageLoad(uVisibilityTexels, inside0 ? index >> 1 : 0);
     u64vec2 old = u64vec2(packUint2x32(seen.xy), packUint2x32(seen.zw));
     if (hit0 || hit1) visibility[index >> 1] = u64vec2(hit0 ? max(best.x, old.x) : old.x, hit1 ? max(best.y, old.y) : old.y);
 #endif
@@ -104,7 +109,13 @@ void main() {
     // Workgroups from both ends of the list alternate: drivers that cut the grid in contiguous parts, one for a
     // thread, then share the work evenly.
     int count = int(texelFetch(uState, STATE_TILE_COUNT).x), half_ = (count + 1) / 2;
+    // Invocations in the order of the subgroups, so that what a subgroup owns is a rectangle.
+    int lane = int(gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID);
+    int firstLane = int(gl_SubgroupID * gl_SubgroupSize);
     int group = int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+    group = group * TILES + firstLane / LANES;
+    lane -= firstLane / LANES * LANES;
+    firstLane -= firstLane / LANES * LANES;
     if (group >= count) return;
     uint packed = texelFetch(uTiles, group < half_ ? 2 * group : 2 * (group - half_) + 1).x;
     ivec2 tile = ivec2(int(packed & 0xffffu), int(packed >> 16));
@@ -125,10 +136,7 @@ void main() {
     uint segment = gl_WorkGroupID.z + FIRST_SEGMENT;
     uint begin = min(segment * SEGMENT, total), end = min(begin + SEGMENT, total);
 
-    // Invocations in the order of the subgroups, so that what a subgroup owns is a rectangle.
-    int lane = int(gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID);
     ivec2 origin = tile * TILE_SIZE, at = ivec2(2 * (lane & 7), (lane >> 3) * ROWS);
-    int firstLane = int(gl_SubgroupID * gl_SubgroupSize);
     ivec2 corner = ivec2(0, (firstLane >> 3) * ROWS);
     ivec2 extent = ivec2(15, max(int(gl_SubgroupSize) >> 3, 1) * ROWS - 1);
     u64vec2 best[ROWS];

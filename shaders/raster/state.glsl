@@ -24,6 +24,8 @@ struct RasterState {
     uint tileGroups[3];  // for the first segment of every tile with entries
     uint moreGroups[3];  // for the others, most often none
     uint tileCount;      // tiles with entries, each x | y << 16
+    uint freshGroups[3];  // in place of tileGroups where nothing has been drawn before
+    uint smallCount;      // triangles drawn directly
 };
 const int STATE_TILE_COUNT = 19;  // its place among the words
 const uint TILE_ROW = 32768u;     // workgroups of tiles in x: some devices have no more than 65,535

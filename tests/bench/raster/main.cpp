@@ -1,8 +1,9 @@
 /** @file
  * The compute rasterizer against Vulkan's graphics pipeline on the same device: same triangles, same
  * visibility output, interleaved runs, medians of the device's own timestamps, clears included.
- * `bench_raster [--rounds N] [--passes] [FILE...]` prints a Markdown table; files are drawn after the
- * built-in scenes, --passes adds the times of the compute rasterizer's passes.
+ * `bench_raster [--rounds N] [--passes] [--only TEXT] [FILE...]` prints a Markdown table; files are drawn
+ * after the built-in scenes, --passes adds the times of the compute rasterizer's passes, --only leaves out
+ * scenes without TEXT in their names.
  */
 #include "passes/raster/raster_pipeline.hpp"
 #include "tests/bench/raster/graphics_rasterizer.hpp"
@@ -103,6 +104,7 @@ void measure(Device& device, const BenchScene& scene, int rounds, bool details) 
 int run(int argc, char** argv) {
     int rounds = 15;
     bool details = false;
+    std::string only;
     std::vector<std::string> files;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
@@ -110,6 +112,8 @@ int run(int argc, char** argv) {
             details = true;
         } else if (argument == "--rounds" && i + 1 < argc) {
             rounds = std::max(1, std::atoi(argv[++i]));
+        } else if (argument == "--only" && i + 1 < argc) {
+            only = argv[++i];
         } else {
             files.push_back(argument);
         }
@@ -120,12 +124,18 @@ int run(int argc, char** argv) {
         "| scene | triangles | graphics, ms | compute, ms | graphics / compute | of the fastest "
         "runs | in CPU time | ids that differ |\n");
     fmt::print("|---|---|---|---|---|---|---|---|\n");
-    measure(device, scattered("about 1 pixel", 1000000, 1.6, kSize), rounds, details);
-    measure(device, scattered("4 pixels", 200000, 4, kSize), rounds, details);
-    measure(device, scattered("30x30 pixels", 10000, 30, kSize), rounds, details);
-    measure(device, scattered("150x150 pixels", 2000, 150, kSize), rounds, details);
-    measure(device, fullScreen("full screen", 8, kSize), rounds, details);
-    for (const std::string& file : files) measure(device, fromFile(file, kSize), rounds, details);
+    const auto draw = [&](const std::string& name, const auto& make) {
+        if (name.find(only) != std::string::npos) measure(device, make(name), rounds, details);
+    };
+    const auto small = [&](const std::string& name, std::uint32_t count, double side) {
+        draw(name, [&](const std::string& n) { return scattered(n, count, side, kSize); });
+    };
+    small("about 1 pixel", 1000000, 1.6);
+    small("4 pixels", 200000, 4);
+    small("30x30 pixels", 10000, 30);
+    small("150x150 pixels", 2000, 150);
+    draw("full screen", [](const std::string& n) { return fullScreen(n, 8, kSize); });
+    for (const std::string& file : files) draw(file, [](const std::string& n) { return fromFile(n, kSize); });
     return 0;
 }
 
