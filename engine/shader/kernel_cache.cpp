@@ -3,6 +3,7 @@
 #include "engine/shader/glsl_compiler.hpp"
 #include "engine/shader/source_tree.hpp"
 #include "engine/shader/spirv_files.hpp"
+#include "engine/shader/spirv_trimmer.hpp"
 #include "engine/shader/spirv_validator.hpp"
 
 #include <heliograph/error.hpp>
@@ -78,6 +79,8 @@ CompiledGlsl loadOrCompile(const std::string& path, const std::string& glsl, con
     }
     ++c.compiled;
     CompiledGlsl compiled = compileGlsl(path, glsl, variant);
+    // A variant is made to leave things out.
+    if (compiled.ok && !variant.defines.empty()) compiled.spirv = trimmedSpirv(std::move(compiled.spirv));
     if (keep == KeepOnDisk::Yes) storeSpirv(path, glsl, variant, compiled);
     return compiled;
 }

@@ -54,7 +54,7 @@ private:
 std::string identity(const std::string& path, const std::string& glsl, const KernelVariant& variant) {
     const glslang::Version glslangVersion = glslang::GetVersion();
     Packer packer;
-    packer.add(fmt::format("heliograph {} glslang {}.{}.{} {}", version(), glslangVersion.major,
+    packer.add(fmt::format("heliograph {} trimmed glslang {}.{}.{} {}", version(), glslangVersion.major,
                            glslangVersion.minor, glslangVersion.patch, glslangVersion.flavor));
     for (const std::string& text : {path, glsl, variant.generated}) packer.add(text);
     for (const auto& [name, value] : variant.defines) {

@@ -3,17 +3,22 @@
 #include "passes/film/film.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "passes/scene/device_scene.hpp"
+#include "passes/scene/material_layout.hpp"
 #include "tests/support/device.hpp"
 #include "tests/support/scene_features.hpp"
 #include "tests/support/specialized_kernel.hpp"
+
+#include <heliograph/kernel.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace helio::test {
@@ -91,6 +96,27 @@ TEST(FeaturesOff, LayersOfAMaterialCostNothingWhereItHasNone) {
     for (const Feature& feature : features()) {
         if (!layers.contains(feature.name)) continue;
         EXPECT_GT(with(feature).instructions, with(*gloss).instructions) << feature.name;
+    }
+}
+
+/** The words that the driver gets, before its constants are known. */
+TEST(FeaturesOff, OneMaterialInTheSceneIsOneMaterialInTheKernel) {
+    using Model = Scattering::Model;
+    const std::map<std::string, std::optional<Model>> materials = {{"gltfValue(", {}},
+                                                                   {"orenNayarValue(", Model::OrenNayar},
+                                                                   {"conductorValue(", Model::Conductor},
+                                                                   {"phongValue(", Model::Phong}};
+    for (const auto& [own, model] : materials) {
+        Material material;
+        material.scattering = model ? std::optional(Scattering{.model = *model}) : std::nullopt;
+        const std::string features = fmt::format("0x{:x}u", pack::materialFeatures(material));
+        const Kernel kernel = compileVariant({"pathtrace/trace", {}, "passes/pathtrace/trace.comp"},
+                                             {.defines = {{"SURFACE_MATERIALS", features}}, .generated = ""});
+        const std::string_view bytes(reinterpret_cast<const char*>(kernel.spirv.data()),
+                                     kernel.spirv.size_bytes());
+        // Functions keep their names.
+        for (const auto& [name, other] : materials)
+            EXPECT_EQ(bytes.find(name) != std::string_view::npos, name == own) << own << " has " << name;
     }
 }
 
