@@ -1,6 +1,7 @@
 #include "passes/mip/mip_chain.hpp"
 
 #include <heliograph/error.hpp>
+#include <heliograph/image.hpp>
 
 #include <fmt/format.h>
 #include <heliograph_kernels/mip.hpp>
@@ -9,6 +10,7 @@
 #include <bit>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace helio {
@@ -17,6 +19,12 @@ namespace {
 // As in shaders/scene/textures.glsl.
 constexpr std::uint32_t kFloat = 1u << 5;
 constexpr std::uint32_t kMipmaps = 1u << 6;
+constexpr std::uint32_t kLinear = 1u << 7;
+
+/** A level that fills a workgroup's row and has so many texels is made by a dispatch of its own. */
+constexpr std::size_t kNone = ~std::size_t(0);
+constexpr std::uint32_t kWideRow = 128;
+constexpr std::uint64_t kWideTexels = 1u << 14;
 
 struct Size {
     std::uint32_t width, height;
@@ -29,11 +37,36 @@ std::vector<glm::uvec4> atLeastOne(std::vector<glm::uvec4> values) {
     return values;
 }
 
-/** Push constants of both kernels. */
+/** Push constants of mip.glsl. */
 struct MipPush {
-    MipLayout::Level level;
-    std::uint32_t firstInvocation;
+    std::uint32_t firstItem, items, invocations, firstInvocation;
 };
+/** Push constants of mip_wide.glsl. */
+struct WidePush {
+    MipLayout::Wide wide;
+    std::int32_t firstRow;
+};
+
+/** Workgroups of mip_wide.glsl. */
+constexpr glm::ivec2 kWideGroup(128, 8);
+
+glm::ivec2 invocations(const MipLayout::Wide& wide) {
+    return wide.second >= 0 ? wide.size / 2 : wide.size;
+}
+
+/** What the wide kernels are specialized for: TWO_LEVELS, WHOLE_GROUPS, TEXELS. */
+using WideKind = std::tuple<bool, bool, std::int32_t>;
+WideKind wideKind(std::uint32_t flags, const MipLayout::Wide& wide, bool base) {
+    const std::int32_t texels = (flags & kFloat) != 0 ? 2 : (flags & kLinear) != 0 ? 1 : 0;
+    const bool whole = invocations(wide) % kWideGroup == glm::ivec2(0);
+    return {wide.second >= 0, whole, base ? texels : 0};
+}
+
+std::vector<float> decodedCodes() {
+    std::vector<float> values;
+    for (int code = 0; code < 256; ++code) values.push_back(float(srgbDecode(code / 255.0)));
+    return values;
+}
 
 }  // namespace
 
@@ -48,6 +81,7 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
         std::uint32_t texture;
         Size size;
         std::uint64_t offset;  // of its newest level
+        std::size_t two;       // of the wide work of the level before that makes the next too; kNone
     };
     std::vector<Chain> open;
     table.resize(textures.size(), glm::uvec4(0, 1, 0, 0));
@@ -62,29 +96,43 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
         }
         table[t] = {std::uint32_t(table.size()), count, 0, 0};
         table.resize(table.size() + count - 1);
-        open.push_back({t, {header.y, header.z}, 0});
+        open.push_back({t, {header.y, header.z}, 0, kNone});
     }
     for (std::uint32_t level = 1; !open.empty(); ++level) {
-        Level step{std::uint32_t(work.size() / 2), 0, 0};
+        Level step{.firstItem = std::uint32_t(work.size() / 2)};
         std::uint64_t invocations = 0;
         for (Chain& chain : open) {
             const Size finer = chain.size, size = finer.half();
             const std::uint64_t count = std::uint64_t(size.width) * size.height;
-            work.emplace_back(std::uint32_t(invocations), std::uint32_t(texels), size.width, size.height);
-            work.emplace_back(level == 1 ? chain.texture : std::uint32_t(chain.offset), finer.width,
-                              finer.height, 0);
+            if (chain.two != kNone) {
+                levels.back().wide[chain.two].second.second = std::int32_t(texels);
+                chain.two = kNone;
+            } else if (size.width >= kWideRow && count >= kWideTexels) {
+                const glm::uvec4& header = textures[chain.texture];
+                if (finer.width % 4 == 0 && finer.height % 4 == 0) chain.two = step.wide.size();
+                step.wide.push_back({header.w,
+                                     {.size = {size.width, size.height},
+                                      .sourceSize = {finer.width, finer.height},
+                                      .target = std::int32_t(texels),
+                                      .source = std::int32_t(level == 1 ? header.x : chain.offset),
+                                      .second = -1}});
+            } else {
+                work.emplace_back(std::uint32_t(invocations), std::uint32_t(texels), size.width, size.height);
+                work.emplace_back(level == 1 ? chain.texture : std::uint32_t(chain.offset), finer.width,
+                                  finer.height, 0);
+                invocations += count;
+                ++step.items;
+            }
             table[table[chain.texture].x + level - 1] = {std::uint32_t(texels), size.width, size.height, 0};
             chain.size = size;
             chain.offset = texels;
-            invocations += count;
             texels += count;
-            ++step.items;
             if (texels > (1ull << 27))
                 throw InputError("", "textures", fmt::format("mip levels need more than {} texels", 1u << 27),
                                  "reduce their sizes");
         }
         step.invocations = std::uint32_t(invocations);
-        levels.push_back(step);
+        levels.push_back(std::move(step));
         std::erase_if(open,
                       [&](const Chain& chain) { return chain.size.width == 1 && chain.size.height == 1; });
     }
@@ -94,26 +142,57 @@ MipChains::MipChains(Device& device, std::span<const glm::uvec4> textures)
     : layout_(textures),
       table_(makeBuffer(device, "mip.table", atLeastOne(layout_.table))),
       work_(makeBuffer(device, "mip.work", atLeastOne(layout_.work))),
+      decoded_(makeBuffer(device, "mip.decoded", decodedCodes())),
       mips_(device, "mip.levels", std::max<std::uint64_t>(layout_.texels, 1) * 16) {}
+
+void MipChains::declareWide(Graph& graph, const std::vector<Binding>& textures, std::size_t level,
+                            Buffer mips) {
+    std::map<WideKind, std::vector<MipLayout::Wide>> kinds;
+    for (const auto& [flags, wide] : layout_.levels[level].wide)
+        kinds[wideKind(flags, wide, level == 0)].push_back(wide);
+    for (const auto& [kind, list] : kinds) {
+        const auto [two, whole, texels] = kind;
+        SpecConstants spec = {{"TWO_LEVELS", two}, {"WHOLE_GROUPS", whole}};
+        if (level == 0) spec["TEXELS"] = texels;
+        Pass pass = graph.compute(level == 0 ? "mip.base" : fmt::format("mip.level{}", level + 1),
+                                  level == 0 ? shaders::mipBaseWide : shaders::mipDownWide, {.spec = spec});
+        if (level == 0)
+            for (const Binding& binding : textures)
+                if (binding.name != "uTextures") pass.reads({binding});
+        if (level == 0) pass.reads({{"uDecoded", graph.import(decoded_), Format::R32F}});
+        pass.modifies({{"uMips", mips, Format::RGBA32F}}).record([list](Commands& c) {
+            for (const MipLayout::Wide& wide : list) {
+                // A dispatch has at most 65,535 workgroups of 8 rows.
+                constexpr std::int32_t most = 1 << 18;
+                const glm::ivec2 grid = invocations(wide);
+                for (std::int32_t row = 0; row < grid.y; row += most)
+                    c.push(WidePush{wide, row})
+                        .dispatchOver(std::uint32_t(grid.x), std::uint32_t(std::min(most, grid.y - row)));
+            }
+        });
+    }
+}
 
 void MipChains::declare(Graph& graph, const std::vector<Binding>& textures, const SpecConstants& spec) {
     if (!needed()) return;
     const Buffer work = graph.import(work_), mips = graph.import(mips_);
     for (std::size_t k = 0; k < layout_.levels.size(); ++k) {
-        const MipLayout::Level level = layout_.levels[k];
+        declareWide(graph, textures, k, mips);
+        const MipLayout::Level& level = layout_.levels[k];
+        if (level.items == 0) continue;
         Pass pass = k == 0 ? graph.compute("mip.base", shaders::mipBase, {.spec = spec})
                            : graph.compute(fmt::format("mip.level{}", k + 1), shaders::mipDown);
-        if (k == 0) pass.reads(textures);
-        pass.reads({{"uMipWork", work}}).record([level](Commands& c) {
-            // A dispatch has at most 65,535 workgroups of 64.
-            constexpr std::uint32_t most = 1u << 21;
-            for (std::uint32_t first = 0; first < level.invocations; first += most)
-                c.push(MipPush{level, first}).dispatchInvocations(std::min(most, level.invocations - first));
-        });
         if (k == 0)
-            pass.writes({{"uMips", mips, Format::RGBA32F}});
+            pass.reads(textures).writes({{"uMips", mips, Format::RGBA32F}});
         else
             pass.modifies({{"uMips", mips, Format::RGBA32F}});
+        pass.reads({{"uMipWork", work}})
+            .record([first = level.firstItem, items = level.items, all = level.invocations](Commands& c) {
+                // A dispatch has at most 65,535 workgroups of 64.
+                constexpr std::uint32_t most = 1u << 21;
+                for (std::uint32_t done = 0; done < all; done += most)
+                    c.push(MipPush{first, items, all, done}).dispatchInvocations(std::min(most, all - done));
+            });
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace helio {
@@ -26,10 +27,18 @@ struct MipLayout {
 
     std::vector<glm::uvec4> table;
     std::vector<glm::uvec4> work;
-    struct Level {
-        std::uint32_t firstItem, items, invocations;
+    /** A level of one texture that a dispatch of its own makes, and the next where `second` is not negative:
+     * the push constants of passes/mip/mip_wide.glsl but for the last. */
+    struct Wide {
+        glm::ivec2 size, sourceSize;
+        std::int32_t target, source, second;
     };
-    std::vector<Level> levels;  ///< work of levels 1, 2, ...
+    /** Work of one level: wide ones, by the texture's flags, and what the others share. */
+    struct Level {
+        std::uint32_t firstItem = 0, items = 0, invocations = 0;
+        std::vector<std::pair<std::uint32_t, Wide>> wide = {};
+    };
+    std::vector<Level> levels;  ///< 1, 2, ...
     std::uint64_t texels = 0;   ///< of all levels from 1
 };
 
@@ -49,8 +58,11 @@ public:
     const MipLayout& layout() const { return layout_; }
 
 private:
+    void declareWide(Graph& graph, const std::vector<Binding>& textures, std::size_t level,
+                     Buffer mips);
+
     MipLayout layout_;
-    DeviceBuffer table_, work_, mips_;
+    DeviceBuffer table_, work_, decoded_, mips_;
 };
 
 }  // namespace helio

@@ -20,7 +20,7 @@
 namespace helio::test {
 namespace {
 
-constexpr std::uint32_t kFloatTexture = 1u << 5, kMipmapped = 1u << 6;
+constexpr std::uint32_t kFloatTexture = 1u << 5, kMipmapped = 1u << 6, kLinearTexture = 1u << 7;
 
 struct Level {
     std::uint32_t width, height;
@@ -60,7 +60,8 @@ struct Packed {
     std::vector<glm::vec4> texelsFloat;
     std::vector<Level> bases;
 
-    void add(std::uint32_t width, std::uint32_t height, bool floats, std::mt19937& random) {
+    void add(std::uint32_t width, std::uint32_t height, bool floats, std::mt19937& random,
+             bool linear = false) {
         Level base{width, height, {}};
         const std::size_t offset = floats ? texelsFloat.size() : texels8.size();
         for (std::uint32_t i = 0; i < width * height; ++i) {
@@ -72,12 +73,12 @@ struct Packed {
                 const std::uint32_t word = std::uint32_t(random());
                 texels8.push_back(word);
                 const auto channel = [&](int k) { return (word >> (8 * k) & 255u) / 255.0; };
-                base.texels.emplace_back(srgbDecode(channel(0)), srgbDecode(channel(1)),
-                                         srgbDecode(channel(2)), channel(3));
+                const auto color = [&](int k) { return linear ? channel(k) : srgbDecode(channel(k)); };
+                base.texels.emplace_back(color(0), color(1), color(2), channel(3));
             }
         }
         headers.emplace_back(std::uint32_t(offset), width, height,
-                             kMipmapped | (floats ? kFloatTexture : 0u));
+                             kMipmapped | (floats ? kFloatTexture : 0u) | (linear ? kLinearTexture : 0u));
         bases.push_back(std::move(base));
     }
 };
@@ -95,7 +96,7 @@ std::vector<glm::vec4> makeMips(const Packed& packed, MipChains& chains) {
                    {{"uTextures", graph.import(headers)},
                     {"uTexels8", graph.import(bytes), Format::R32UI},
                     {"uTexelsFloat", graph.import(floats)}},
-                   {});
+                   {{"HAS_LINEAR_TEXTURES", true}});
     const std::vector<Binding> bindings = chains.bindings(graph);
     const auto levels = graph.readback<glm::vec4>(Buffer{bindings[1].resource, bindings[1].graph});
     Plan plan = graph.compile();
@@ -116,11 +117,13 @@ TEST(MipChain, NumberOfLevels) {
 TEST(MipChain, EveryTexelAndMeanOfEverySize) {
     std::mt19937 random(1);
     Packed packed;
-    const std::array<std::uint32_t, 2> sizes[] = {{64, 64}, {1, 37},  {37, 1},    {17, 33}, {2, 5}, {3, 3},
-                                                  {1, 1},   {128, 7}, {255, 101}, {6, 10},  {1, 64}};
+    const std::array<std::uint32_t, 2> sizes[] = {{64, 64}, {1, 37},    {37, 1},    {17, 33},   {2, 5},
+                                                  {3, 3},   {1, 1},     {128, 7},   {255, 101}, {6, 10},
+                                                  {1, 64},  {512, 256}, {300, 301}, {515, 258}};
     for (const auto& [width, height] : sizes) {
         packed.add(width, height, false, random);
         packed.add(width, height, true, random);
+        packed.add(width, height, false, random, true);
     }
     MipChains chains(device(), packed.headers);
     const auto values = makeMips(packed, chains);
