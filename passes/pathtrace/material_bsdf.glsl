@@ -8,6 +8,12 @@
  * white surface stays white (dropping it would darken a lobe tilted by t to (1 + cos t)/2). A lobe that goes through
  * is mirrored downwards likewise. Where the viewer is under the shading normal's horizon the normal is bent until
  * it sees the viewer at LEAST_COSINE.
+ *
+ * Shading normals are not reciprocal (Veach, "Non-symmetric scattering in light transport algorithms", 1996), and these
+ * are none either: seen over the true surface, a diffuse lobe of the normal n has the value a (n.wi + n.wi') / (pi g.wi),
+ * each cosine where positive, with g the true normal and wi' mirrored at it. It depends on wi alone: f(i, o) / f(o, i) is
+ * (1 + tan t tan i cos p) / (1 + tan t tan o cos q) for a tilt t and angles i, o, azimuths p, q about g, as long as both
+ * directions see no more than one of the two parts: 1 from above, without bound towards the horizon.
  */
 #include "passes/pathtrace/surface.glsl"
 #include "shaders/sampling/sampler.glsl"

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -251,6 +252,55 @@ TEST(Furnace, LosslessMaterialsVanish) {
             expectMean(plate(image, 6), 1 / (1 + (0.5L - 2 / (3 * kPi)) * double(0.8f)), 1e-4L, "oren");
             Estimate e = plate(image, 5);  // exponent 0
             EXPECT_NEAR(e.mean, 1, 4 * e.error);
+        }
+    }
+}
+
+/** A part of a lobe that a normal tilts under the surface is mirrored at it: however steep the map, towards
+ * the viewer, across or away, a surface that loses no light shows as much as is around it. */
+TEST(Furnace, NormalMapsOfAnyTiltLoseNothing) {
+    Plates p;
+    Scene& scene = p.b.scene;
+    Material facets = model(Scattering::Model::Conductor);
+    facets.scattering->n = glm::vec3(0.01f);
+    facets.scattering->k = glm::vec3(100);
+    facets.scattering->multipleScattering = true;
+    facets.scattering->alpha = glm::vec2(0.6f);
+    Material white = gltf(glm::vec3(1), 0, 1);
+    white.specular = 0;
+    std::array materials = {white, model(Scattering::Model::Mirror), facets};
+    for (const double tilt : {20.0L, 45.0L, 70.0L, 85.0L, 89.9L}) {
+        for (const double turn : {0.0L, 90.0L, 200.0L}) {
+            const double sine = std::sin(tilt * kPi / 180);
+            const glm::dvec3 n(sine * std::cos(turn * kPi / 180), sine * std::sin(turn * kPi / 180),
+                               std::cos(tilt * kPi / 180));
+            const glm::vec3 texel = 0.5f * glm::vec3(n) + 0.5f;
+            scene.images.push_back({"tilt", 1, 1, std::vector<float>{texel.x, texel.y, texel.z, 1}});
+            Texture texture;
+            texture.image = int(scene.images.size()) - 1;
+            scene.textures.push_back(texture);
+            for (std::size_t i = 0; i < materials.size(); ++i) {
+                materials[i].normalTexture.texture = int(scene.textures.size()) - 1;
+                p.add(std::array{"white", "mirror", "facets"}[i] + std::string(" tilted by ") +
+                          std::to_string(int(tilt)) + " towards " + std::to_string(int(turn)),
+                      materials[i]);
+            }
+        }
+    }
+    scene.environment = Environment{glm::vec3(1), -1};
+    for (const double angle : {0.0L, 50.0L, 85.0L}) {
+        Plates seen = p;
+        seen.view(angle);
+        const Traced image = seen.render(64);
+        EXPECT_EQ(image.rejected, 0u);
+        for (std::size_t i = 0; i < p.names.size(); ++i) {
+            if (i % 3 != 2) {
+                expectMean(plate(image, i), 1, 1e-4L, p.names[i]);
+            } else {
+                const Estimate e = plate(image, i);
+                EXPECT_NEAR(e.mean, 1, 1e-3L + 4.5L * e.error) << p.names[i] << " at " << angle;
+                EXPECT_LT(e.error, 0.03L);
+            }
         }
     }
 }

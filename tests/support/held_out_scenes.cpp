@@ -161,12 +161,13 @@ Scene pane() {
     return scene;
 }
 
-Scene cellar() {
+/** A box like Cornell's with two lamps, a centimetre below its ceiling. */
+Scene cellar(bool lightsCeiling) {
     SceneBuilder builder;
     const int plaster = builder.material({0.7f, 0.68f, 0.6f}), red = builder.material({0.6f, 0.12f, 0.1f});
     const int blue = builder.material({0.12f, 0.2f, 0.55f});
     builder.room({-1.5f, 0, -1.5f}, {1.5f, 2.4f, 2.5f}, {red, blue, plaster, plaster, plaster, plaster});
-    const int lamp = builder.material(glm::vec3(0), {8, 7, 5}, true);
+    const int lamp = builder.material(glm::vec3(0), {8, 7, 5}, lightsCeiling);
     builder.quad({-1.1f, 2.39f, -0.9f}, {-0.5f, 2.39f, -0.9f}, {-0.5f, 2.39f, -0.3f}, {-1.1f, 2.39f, -0.3f},
                  lamp);
     builder.quad({0.6f, 2.39f, 0.4f}, {1.2f, 2.39f, 0.4f}, {1.2f, 2.39f, 1}, {0.6f, 2.39f, 1}, lamp);
@@ -201,9 +202,15 @@ Scene lacquer() {
 }  // namespace
 
 const std::map<std::string, Scene (*)()>& heldOutScenes() {
-    static const std::map<std::string, Scene (*)()> scenes = {
-        {"yard", yard},   {"metals", metals}, {"blinds", blinds}, {"garden", garden},
-        {"shelf", shelf}, {"pane", pane},     {"cellar", cellar}, {"lacquer", lacquer}};
+    static const std::map<std::string, Scene (*)()> scenes = {{"yard", yard},
+                                                              {"metals", metals},
+                                                              {"blinds", blinds},
+                                                              {"garden", garden},
+                                                              {"shelf", shelf},
+                                                              {"pane", pane},
+                                                              {"hall", [] { return cellar(false); }},
+                                                              {"cellar", [] { return cellar(true); }},
+                                                              {"lacquer", lacquer}};
     return scenes;
 }
 

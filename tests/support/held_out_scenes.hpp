@@ -15,7 +15,8 @@ namespace helio::test {
  *   garden   a textured floor under an environment image with a veiled sun
  *   shelf    spheres before and behind the plane that a lens is focused at
  *   pane     a block of smooth glass before another on a checkered floor, under a constant sky
- *   cellar   a box like Cornell's with two lamps
+ *   hall     a box like Cornell's with two lamps near its ceiling
+ *   cellar   the same, its lamps shining upwards too: few samples see the gap above them
  *   lacquer  clear coats and glossy plastic under a point light and a dim sky */
 const std::map<std::string, Scene (*)()>& heldOutScenes();
 

@@ -2,6 +2,8 @@
 
 #include "tests/support/scene_films.hpp"
 
+#include <heliograph/verify.hpp>
+
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -36,6 +38,7 @@ Coverage count(std::vector<Judged>& all, const std::vector<double>& reference) {
     Coverage result;
     result.seeds = std::uint32_t(all.size());
     const double seeds = double(all.size());
+    verify::RunningStatistics off;
     for (Judged& judged : all) {
         FilmImages film;
         film.mean = std::move(judged.picture);
@@ -50,8 +53,13 @@ Coverage count(std::vector<Judged>& all, const std::vector<double>& reference) {
         result.coveredReliable += in && e.reliable;
         result.truth += truth / seeds;
         result.estimate += e.relmse / seeds;
-        result.width += std::log(e.high / e.low) / seeds;
+        const double width = std::log(e.high / e.low);
+        result.width += width / seeds;
+        // Of a normal variable, 95 % lie within 3.92 standard deviations.
+        off.add((e.relmse - truth) / e.relmse / (width / 3.92));
     }
+    result.offset = off.mean();
+    result.spread = std::sqrt(off.variance());
     return result;
 }
 

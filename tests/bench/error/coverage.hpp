@@ -26,6 +26,9 @@ struct Coverage {
     std::uint32_t coveredReliable = 0;
     double truth = 0, estimate = 0;  ///< mean relMSE, true and estimated
     double width = 0;                ///< mean of log(high / low)
+    /** Mean and deviation of estimate - truth in standard errors that the width stands for: 0 and 1 where the
+     * estimate is as good as it says. */
+    double offset = 0, spread = 0;
 };
 
 /** Renders the scene under every seed. The truth is the mean of all pictures: it has 1 / seeds of the

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -25,13 +26,18 @@ int coverage(const std::vector<std::string>& scenes, const helio::test::Coverage
     fmt::print("{}x{}, {} samples, {} seeds\n", options.size, options.size, options.samples, options.seeds);
     fmt::print(
         "| scene | true relMSE | estimate / true | in the interval | above it | below it | reliable | "
-        "high / low |\n|---|---|---|---|---|---|---|---|\n");
+        "in it where reliable | high / low | offset | spread |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const std::string& scene : scenes) {
         const helio::test::Coverage c = helio::test::measureCoverage(device, sceneOf(scene), scene, options);
         const double percent = 100.0 / c.seeds;
-        fmt::print("| {} | {:.3g} | {:.4f} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {:.3f} |\n", scene,
-                   c.truth, c.estimate / c.truth, c.covered * percent, c.above * percent, c.below * percent,
-                   c.reliable * percent, std::exp(c.width));
+        fmt::print(
+            "| {} | {:.3g} | {:.4f} | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {:.1f} % | {:.3f} | {:.2f} "
+            "| {:.2f} "
+            "|\n",
+            scene, c.truth, c.estimate / c.truth, c.covered * percent, c.above * percent, c.below * percent,
+            c.reliable * percent, 100.0 * c.coveredReliable / std::max(1u, c.reliable), std::exp(c.width),
+            c.offset, c.spread);
         std::fflush(stdout);
     }
     return 0;
