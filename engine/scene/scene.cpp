@@ -1,3 +1,5 @@
+#include "engine/scene/shape.hpp"
+
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
@@ -154,6 +156,12 @@ Scene::Bounds Scene::bounds() const {
     Bounds bounds;
     for (const Instance& instance : instances()) {
         const Bounds& box = boxes[std::size_t(instance.mesh)];
+        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
+            if (!primitive.shape) continue;
+            const Bounds shape = shapeBounds(placeShape(*this, instance, *primitive.shape));
+            extend(bounds, shape.lower);
+            extend(bounds, shape.upper);
+        }
         if (box.empty() || boxIsInside(box, instance.transform, bounds)) continue;
         for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
             for (std::uint32_t index : primitive.indices) {
@@ -171,6 +179,15 @@ std::uint64_t Scene::triangleCount() const {
         for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
             count += primitive.indices.size() / 3;
         }
+    }
+    return count;
+}
+
+std::uint64_t Scene::shapeCount() const {
+    std::uint64_t count = 0;
+    for (const Instance& instance : instances()) {
+        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives)
+            count += primitive.shape ? 1 : 0;
     }
     return count;
 }

@@ -1,6 +1,7 @@
 /** @file What every scene must satisfy before anything is computed from it, an importer's or an
  * application's. */
 #include "engine/scene/lens_table.hpp"
+#include "engine/scene/shape.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
@@ -218,8 +219,18 @@ private:
                "give none, or one per position");
     }
 
+    void check(const Shape& shape, std::size_t vertices, const std::string& place) const {
+        if (vertices > 0)
+            refuse(place, fmt::format("has a shape and {} positions", vertices),
+                   "give each a primitive of its own");
+        number(place, "shape's radius", shape.radius, smallestShape, largestShape);
+        number(place, "shape's width", shape.width, smallestShape, largestShape);
+        number(place, "shape's height", shape.height, smallestShape, largestShape);
+    }
+
     void check(const Primitive& primitive, const std::string& place) const {
         const std::size_t vertices = primitive.positions.size();
+        if (primitive.shape) check(*primitive.shape, vertices, place);
         index(place, "material", primitive.material, scene_.materials.size(), -1);
         perVertex(place, "normals", primitive.normals.size(), vertices);
         perVertex(place, "tangents", primitive.tangents.size(), vertices);
@@ -424,7 +435,12 @@ private:
                 }
             }
         };
-        for (const Instance& instance : scene_.instances()) transform(instance.node, instance.transform);
+        for (const Instance& instance : scene_.instances()) {
+            transform(instance.node, instance.transform);
+            if (instance.mesh >= int(scene_.meshes.size())) continue;
+            for (const Primitive& primitive : scene_.meshes[std::size_t(instance.mesh)].primitives)
+                if (primitive.shape) placeShape(scene_, instance, *primitive.shape);
+        }
         for (const PlacedCamera& camera : scene_.placedCameras()) transform(camera.node, camera.transform);
         for (const PlacedLight& light : scene_.placedLights()) transform(light.node, light.transform);
         for (const PlacedMeter& meter : scene_.placedMeters()) transform(meter.node, meter.transform);
@@ -434,6 +450,8 @@ private:
     /** FILM_LARGEST of shaders/film/accumulate.glsl: a sample above it is left out of the picture. */
     static constexpr float brightest = 0x1p100f;
     static constexpr double smallest = std::numeric_limits<float>::min();
+    /** Squares of a shape's sizes are normal floats. */
+    static constexpr double smallestShape = 1e-12, largestShape = 1e12;
     const Scene& scene_;
 };
 

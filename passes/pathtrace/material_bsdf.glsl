@@ -57,6 +57,21 @@ vec3 bentTowards(vec3 normal, vec3 w) {
     return cosine >= LEAST_COSINE ? normal : normalizeSafe(normal + w * (LEAST_COSINE * 1.001 - cosine), w);
 }
 
+/** The tangent frame of a surface's front about a unit normal. */
+mat3 frontFrame(SurfacePoint s, vec3 normal) {
+    mat3 frame = tangentFrame(s.triangle.g, s.b, normal);
+#ifdef SHAPES
+    if (HAS_TANGENTS && HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE) {
+        // Along the parallel, wherever that has a direction.
+        const vec3 across = cross(s.triangle.v2, normal);
+        const float handed = dot(cross(frame[0], frame[1]), normal) < 0.0 ? -1.0 : 1.0;
+        if (dot(across, across) > 1e-10 * dot(s.triangle.v2, s.triangle.v2)) frame[0] = handed * normalize(across);
+        frame[1] = handed * cross(normal, frame[0]);
+    }
+#endif
+    return frame;
+}
+
 /** A volume lies behind its surface's front face: the segment runs in one where it ends at a back face, or, for what
  * lies within, where it left one inwards. */
 vec3 throughMedium(SurfacePoint s, vec3 direction, int source, float distance) {
@@ -64,9 +79,8 @@ vec3 throughMedium(SurfacePoint s, vec3 direction, int source, float distance) {
     if (HAS_VOLUMES) {
         vec3 absorption = s.front ? vec3(0.0) : materialRow(s.triangle.material, 9).rgb;
         if (source >= 0) {
-            const Triangle t = fetchTriangle(source);
-            const bool inwards = dot(cross(t.v1 - t.v0, t.v2 - t.v0), direction) < 0.0;
-            const vec3 entered = materialRow(t.material, 9).rgb;
+            const bool inwards = leftInwards(source, s.position, direction, distance);
+            const vec3 entered = materialRow(fetchTriangle(source).material, 9).rgb;
             absorption = max(absorption, inwards ? entered : vec3(0.0));
         }
         left = vec3(realExp(max(-absorption.x * distance, -80.0)), realExp(max(-absorption.y * distance, -80.0)),
@@ -95,12 +109,13 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
     bsdf.model = HAS_MODELS ? flags >> MATERIAL_MODEL_SHIFT : 0u;
 
     const float side = s.front ? 1.0 : -1.0;
-    mat3 frame = tangentFrame(g, s.b, s.shading * side);
+    mat3 frame = frontFrame(s, s.shading * side);
     vec3 normal = s.shading;
     if (HAS_NORMAL_MAPS) normal = side * (frame * mappedNormal(material, 16, uv, materialRow(material, 8).w));
     if (HAS_BUMPS) {
-        const Triangle t = s.triangle;
-        normal = side * bumpedNormal(material, g, s.b, uv, side * normal, t.v1 - t.v0, t.v2 - t.v0);
+        vec3 e1, e2;
+        surfaceEdges(s, e1, e2);
+        normal = side * bumpedNormal(material, g, s.b, uv, side * normal, e1, e2);
     }
     normal = bentTowards(normal, wo);
 
@@ -134,7 +149,7 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
     if (HAS_GLTF && HAS_CLEARCOAT) {
         vec3 coat = s.shading;
         if (HAS_CLEARCOAT_TEXTURES) {
-            const mat3 original = tangentFrame(g, s.b, s.shading * side);
+            const mat3 original = frontFrame(s, s.shading * side);
             coat = side * (original * mappedNormal(material, 28, uv, materialRow(material, 10).z));
         }
         bsdf.gltf.coatNormal = bentTowards(coat, wo) * bsdf.frame;

@@ -83,7 +83,11 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
 #else
             const float areaDensity = e.areaDensity;
 #endif
-            const float sampled = cosine > 0.0 ? areaDensity * distance * distance / cosine : 0.0;
+            float sampled = cosine > 0.0 ? areaDensity * distance * distance / cosine : 0.0;
+#ifdef SHAPES
+            if (HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE)
+                sampled = areaDensity * sphereDensity(path.origin, s.triangle.v0, length(s.triangle.v1), distance, cosine);
+#endif
             weight = path.density < 0.0 ? 1.0 : path.density / (path.density + sampled);
         }
         path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);

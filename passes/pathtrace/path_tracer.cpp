@@ -70,7 +70,7 @@ struct PathTracer::Impl {
         if (!camera_.texels.empty()) table_.emplace(makeBuffer(device, "pathtrace.camera", camera_.texels));
         assert((scene_.info().motionKeys == 0 || options_.shutter != ShutterTimes{}) && "no time to move in");
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
-        if (!scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
+        if (unrolled_ || !scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
         declareTrace(film);
     }
 
@@ -79,6 +79,9 @@ struct PathTracer::Impl {
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
         spec["ORTHOGRAPHIC"] = orthographic_;
         spec.merge(SpecConstants(camera_.constants));
+        if (scene_.info().hasShapes())
+            spec.merge(
+                scene_.constants({"LISTED_SHAPES", "SHAPES_IN_TREE", "HAS_SPHERES", "HAS_FLAT_SHAPES"}));
         if (!materialDefines_.empty())
             spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES"}));
         return spec;
@@ -91,6 +94,7 @@ struct PathTracer::Impl {
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
         if (scene_.info().solidTextures) defines["SOLID_TEXTURES"] = "1";
+        if (scene_.info().hasShapes()) defines["SHAPES"] = "1";
         if (table_) defines["CAMERA_TABLE"] = "1";
         if (scene_.info().motionKeys > 0) defines["MOTION_KEYS"] = std::to_string(scene_.info().motionKeys);
         if (generated_.empty() && defines.empty()) return built;
@@ -169,7 +173,7 @@ struct PathTracer::Impl {
         spec["HEMISPHERE"] = options_.hemisphere;
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         const bool seesThrough = (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
-        spec["COUNT_TURNS"] = !unrolled_ || seesThrough;
+        spec["COUNT_TURNS"] = !unrolled_ || seesThrough || scene_.info().listedShapes > 0;
         traceKernel_ = {kernel(options_.kernel ? *options_.kernel : shaders::trace, defines), spec};
         graph.compute("trace", traceKernel_.kernel, {.spec = spec})
             .reads(scene_.bindings(graph, surfaceBuffers()))
@@ -284,7 +288,8 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
     const bool moves = options.shutter != ShutterTimes{};
-    return {.tree = !choose || moves || options.radiosity || scene.triangleCount() > kWrittenOutTriangles,
+    return {.tree = !choose || moves || options.radiosity || scene.triangleCount() > kWrittenOutTriangles ||
+                    scene.shapeCount() > kListedShapes,
             .writeOutLargest = choose && !moves && !options.radiosity,
             .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,

@@ -18,7 +18,39 @@ struct SurfacePoint {
     Triangle triangle;
 };
 
-/** The point of the triangle in `slot` that a ray meets. */
+#ifdef SHAPES
+#include "shaders/intersection/shape.glsl"
+#include "shaders/scene/sphere_light.glsl"
+
+/** The point of a shape that a ray meets, in `s`, whose triangle is the shape. `b` are such that attributes at a
+ * triangle's corners give the shape's (shapeTexcoords in engine/scene/shape.hpp). */
+void shapePoint(vec3 origin, vec3 direction, inout SurfacePoint s) {
+    vec3 normal = vec3(0.0);
+    if (HAS_FLAT_SHAPES && s.triangle.shape != SHAPE_SPHERE) {
+        const vec2 at = flatCoordinates(shearOf(origin, direction), s.triangle);
+        const vec3 a = s.triangle.v1 * at.x, b = s.triangle.v2 * at.y;
+        s.b = vec3(1.0 - at.x - at.y, at);
+        s.position = s.triangle.v0 + a + b;
+        normal = flatNormal(s.triangle);
+        s.offset = OFFSET_ROUNDOFF * dot(abs(normal), abs(s.triangle.v0) + abs(a) + abs(b));
+    }
+    if (HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE) {
+        const float radius = length(s.triangle.v1);
+        const SphereMeeting m = meetSphere(origin, direction, s.triangle.v0, radius);
+        normal = normalize(m.inside ? m.middle + m.half_ : m.middle - m.half_);
+        s.position = s.triangle.v0 + radius * normal;
+        // Two sums err by u of the position each, the normal's length by 3u; u is a tenth of OFFSET_ROUNDOFF.
+        s.offset = OFFSET_ROUNDOFF * (0.3 * dot(abs(normal), abs(s.position)) + 0.6 * radius);
+        const vec2 uv = sphereCoordinates(normal, s.triangle.v1, s.triangle.v2);
+        s.b = vec3(1.0 - uv.x - uv.y, uv);
+    }
+    s.front = dot(normal, direction) < 0.0;
+    s.face = s.front ? normal : -normal;
+    s.shading = s.face;
+}
+#endif
+
+/** The point of the triangle or shape in `slot` that a ray meets. */
 SurfacePoint surfaceAt(vec3 origin, vec3 direction, int slot) {
     SurfacePoint s;
     s.triangle = fetchTriangle(slot);
@@ -35,6 +67,39 @@ SurfacePoint surfaceAt(vec3 origin, vec3 direction, int slot) {
     const vec3 shading = shadingNormal(s.triangle.g, s.b, normal);
     s.shading = s.front ? shading : -shading;
     s.offset = offsetDistance(v0, v1, v2, normal);
+#ifdef SHAPES
+    if (s.triangle.shape > 0) shapePoint(origin, direction, s);
+#endif
     return s;
+}
+
+/** Derivatives of the position by the second and the third of `b`. */
+void surfaceEdges(SurfacePoint s, out vec3 e1, out vec3 e2) {
+    e1 = s.triangle.v1 - s.triangle.v0;
+    e2 = s.triangle.v2 - s.triangle.v0;
+#ifdef SHAPES
+    if (s.triangle.shape > 0) {
+        e1 = s.triangle.v1;
+        e2 = s.triangle.v2;
+    }
+    if (HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE) {
+        const vec3 y = normalize(s.triangle.v2), z = cross(normalize(s.triangle.v1), y);
+        const vec3 out_ = s.position - s.triangle.v0;
+        e1 = TWO_PI * cross(y, out_);
+        const float across = length(e1);
+        // Downwards along the meridian: the normal times the parallel's direction.
+        e2 = PI * (across > 0.0 ? cross(out_, e1 / -across) : length(out_) * z);
+    }
+#endif
+}
+
+/** Whether a ray that left the surface in `slot` along `direction` and came `distance` far, to `end`, went behind its front. */
+bool leftInwards(int slot, vec3 end, vec3 direction, float distance) {
+    const Triangle t = fetchTriangle(slot);
+    vec3 normal = cross(t.v1 - t.v0, t.v2 - t.v0);
+#ifdef SHAPES
+    if (t.shape > 0) normal = t.shape == SHAPE_SPHERE ? end - direction * distance - t.v0 : flatNormal(t);
+#endif
+    return dot(normal, direction) < 0.0;
 }
 #endif

@@ -70,7 +70,7 @@ bool notifySample(RenderJob& job, std::size_t done, std::size_t all) {
 }  // namespace
 
 PackOptions rasterPackOptions() {
-    return {.tree = false, .sampleSurfaces = true, .diffuseEnvironment = true};
+    return {.tree = false, .sampleSurfaces = true, .shapesAsTriangles = true, .diffuseEnvironment = true};
 }
 
 RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterView& view,

@@ -123,6 +123,8 @@ void checkPatches(const Scene& scene, RenderResult& result) {
     refuse(scene.triangleCount() > kMostPatches, "radiosity",
            fmt::format("the scene has {} triangles", scene.triangleCount()),
            "give at most 2048, or render by paths");
+    refuse(scene.shapeCount() > 0, "radiosity", "patches are cut from triangles, and the scene has shapes",
+           "give meshes in their place, or render by paths");
     const bool isSmooth = std::ranges::any_of(scene.meshes, [](const Mesh& mesh) {
         return std::ranges::any_of(mesh.primitives, [](const Primitive& p) { return !p.normals.empty(); });
     });

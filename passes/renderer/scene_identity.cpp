@@ -108,7 +108,7 @@ void add(Fingerprint& f, const Material& m) {
 /** Of a mesh as it stands: variants and deformations are chosen before. */
 void add(Fingerprint& f, const Primitive& p) {
     const auto& [positions, normals, tangents, texcoords, colors, indices, material, variantMaterials,
-                 targets, joints, weights] = p;
+                 targets, joints, weights, shape] = p;
     f.values(positions);
     f.values(normals);
     f.values(tangents);
@@ -117,6 +117,10 @@ void add(Fingerprint& f, const Primitive& p) {
     f.values(colors);
     f.values(indices);
     f.value(material);
+    f.value(shape.has_value());
+    if (!shape) return;
+    const auto& [kind, radius, width, height] = *shape;
+    addAll(f, kind, radius, width, height);
 }
 
 void add(Fingerprint& f, const PunctualLight& light) {

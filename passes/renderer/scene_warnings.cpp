@@ -52,7 +52,7 @@ void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         const auto& primitives = scene.meshes[m].primitives;
         for (std::size_t p = 0; shown[m] && p < primitives.size(); ++p) {
-            if (primitives[p].material < 0) continue;
+            if (primitives[p].material < 0 || primitives[p].shape) continue;
             const int set = missingSet(scene.materials[std::size_t(primitives[p].material)], primitives[p]);
             if (set < 0) continue;
             primitivesWithout.add([&] {

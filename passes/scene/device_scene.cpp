@@ -43,6 +43,10 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
                   {"ALBEDO_TABLES", std::int32_t(info_.albedoTables)},
                   {"HAS_ROUGH_FACETS", info_.roughFacets},
                   {"HAS_TILTED_LOBES", info_.tiltedLobes},
+                  {"LISTED_SHAPES", std::int32_t(info_.listedShapes)},
+                  {"SHAPES_IN_TREE", info_.shapesInTree},
+                  {"HAS_SPHERES", info_.spheres},
+                  {"HAS_FLAT_SHAPES", info_.flatShapes},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
     const auto upload = [&](std::string_view name, auto& values, Format view) {
         using T = typename std::decay_t<decltype(values)>::value_type;

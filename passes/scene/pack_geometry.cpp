@@ -64,6 +64,43 @@ glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
     return other > 0.0 ? glm::vec3(fallback / other) : glm::vec3(0.0f, 0.0f, 1.0f);
 }
 
+/** Attributes that some surface has, and that all therefore get. */
+struct Attributes {
+    bool normals = false, colors = false, texcoords = false, tangents = false;
+};
+
+/** Appends a shape in place of a triangle: its vectors, and in place of corners' attributes what kernels find
+ * those of its points by. */
+void addShape(const Scene& scene, const Instance& instance, const Primitive& primitive,
+              const glm::dvec3& origin, const Attributes& any, PackedScene& packed,
+              std::vector<glm::vec3>& positions) {
+    const PlacedShape shape = placeShape(scene, instance, *primitive.shape);
+    const glm::vec3 centre(shape.centre - origin);
+    if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z))
+        throw InputError(scene.name, fmt::format("node {}", instance.node),
+                         "its shape is not finite in world space", "correct the node's transform");
+    positions.insert(positions.end(), {centre, glm::vec3(shape.a), glm::vec3(shape.b)});
+    const bool isSphere = shape.kind == Shape::Kind::Sphere;
+    (isSphere ? packed.spheres : packed.flatShapes) = true;
+    if (any.normals)
+        packed.normals.insert(packed.normals.end(), 3,
+                              {unitOr(glm::cross(shape.a, shape.b), glm::dvec3(0, 0, 1)), 0.0f});
+    if (any.colors) packed.colors.insert(packed.colors.end(), 3, glm::vec4(1.0f));
+    if (any.texcoords)
+        for (const glm::vec2& uv : shapeTexcoords(shape)) packed.texcoords.emplace_back(uv, uv);
+    const float scale = float(std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.transform)))));
+    if (any.tangents)
+        packed.tangents.insert(packed.tangents.end(), 3,
+                               {unitOr(shape.a, glm::dvec3(1, 0, 0)), shape.isMirrored ? -scale : scale});
+    if (packed.solidTextures) {
+        for (const glm::vec2& point : shapePoints(*primitive.shape, shape.isMirrored))
+            packed.solidPoints.emplace_back(point, 0.0f, 0.0f);
+        if (isSphere && materialOf(scene, primitive).solid)
+            packed.skipped.emplace_back("solid textures of spheres",
+                                        "they show that of their centre; give a mesh");
+    }
+}
+
 }  // namespace
 
 std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
@@ -77,7 +114,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
                 throw InputError(scene.name, fmt::format("mesh {}", instance.mesh),
                                  fmt::format("material {} does not exist", primitive.material),
                                  "name one of the scene's materials");
-            total += primitive.indices.size() / 3;
+            total += primitive.shape ? 1 : primitive.indices.size() / 3;
         }
         // A node's index and a triangle's place in a leaf share a 32-bit stack entry with 8 bits of flags.
         if (total >= (1u << 24))
@@ -99,6 +136,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
     packed.solidTextures = anyPrimitive(
         scene, instances, [&](const Primitive& p) { return materialOf(scene, p).solid.has_value(); });
 
+    const Attributes any{anyNormals, anyColors, anyTexcoords, anyTangents};
     std::vector<glm::vec3> positions;
     positions.reserve(total * 3);
     surfaces.reserve(total);
@@ -125,6 +163,12 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
             const Primitive& primitive = mesh.primitives[p];
             const std::uint32_t material = primitive.material < 0 ? std::uint32_t(scene.materials.size())
                                                                   : std::uint32_t(primitive.material);
+            if (primitive.shape) {
+                addShape(scene, instance, primitive, origin, any, packed, positions);
+                surfaces.push_back(
+                    {std::uint32_t(i), material, false, 1 + std::uint32_t(primitive.shape->kind)});
+                continue;
+            }
             const Material& look = materialOf(scene, primitive);
             packed.tiltedLobes |= !primitive.normals.empty() && hasWideLobes(look);
             const std::array<int, 2> sets = texcoordSets(look);

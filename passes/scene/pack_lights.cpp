@@ -21,7 +21,9 @@ struct Candidate {
     bool doubleSided = false;
     std::uint32_t g = 0, material = 0;
     double environmentPower = 0;
-    bool isSurface() const { return kind == LightKind::Triangle || kind == LightKind::Parallelogram; }
+    bool isSurface() const {
+        return kind == LightKind::Triangle || kind == LightKind::Parallelogram || kind >= LightKind::Quad;
+    }
 };
 
 /** Most lights that Adaptive chooses among by power. */
@@ -63,6 +65,34 @@ bool makesParallelogram(const glm::vec3* a, const glm::vec3* b, Candidate& light
     return false;
 }
 
+/** Place and area of a shape as a light; false for one without end, which only rays find. */
+bool makesLight(const PlacedShape& shape, Candidate& light, double& area) {
+    light.normal = glm::cross(shape.a, shape.b);
+    area = 4.0 * glm::length(light.normal);
+    light.origin = shape.centre - shape.a - shape.b;
+    light.edge1 = 2.0 * shape.a;
+    light.edge2 = 2.0 * shape.b;
+    switch (shape.kind) {
+        case Shape::Kind::Plane:
+            return false;
+        case Shape::Kind::Quad:
+            light.kind = LightKind::Quad;
+            break;
+        case Shape::Kind::Disc:
+            light.kind = LightKind::Disc;
+            area *= 0.25 * glm::pi<double>();
+            break;
+        case Shape::Kind::Sphere:
+            light.kind = LightKind::Sphere;
+            light.origin = shape.centre;
+            light.edge1 = shape.a;
+            light.edge2 = shape.b;
+            area = 4.0 * glm::pi<double>() * glm::dot(shape.a, shape.a);
+            break;
+    }
+    return true;
+}
+
 void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
                  const std::vector<bool>& isMoving, std::vector<Candidate>& lights) {
     // Radiance that decides how often a surface is chosen: constant over a material's surfaces, so that the
@@ -91,14 +121,19 @@ void addSurfaces(const Scene& scene, std::span<const glm::vec3> positions, std::
         light.edge2 = glm::dvec3(corners[2]) - light.origin;
         glm::dvec3 normal = glm::cross(light.edge1, light.edge2);
         double area = 0.5 * glm::length(normal);
+        if (surfaces[g].shape > 0) {
+            if (!makesLight(shapeOf(corners, surfaces[g].shape), light, area)) continue;
+            normal = light.normal;
+        }
         if (!(area > 0.0)) continue;
-        if (!material.emissiveTexture && material.alphaMode == AlphaMode::Opaque && g + 1 < surfaces.size() &&
+        if (surfaces[g].shape == 0 && surfaces[std::min(g + 1, surfaces.size() - 1)].shape == 0 &&
+            !material.emissiveTexture && material.alphaMode == AlphaMode::Opaque && g + 1 < surfaces.size() &&
             surfaces[g + 1].material == index && surfaces[g + 1].instance == surfaces[g].instance &&
             makesParallelogram(corners, corners + 3, light)) {
             light.kind = LightKind::Parallelogram;
             area = glm::length(glm::cross(light.edge1, light.edge2));
         }
-        light.normal = glm::normalize(normal);
+        light.normal = light.kind == LightKind::Sphere ? glm::dvec3(0.0) : glm::normalize(normal);
         light.radiance = material.emission;
         light.doubleSided = material.doubleSided;
         light.weightPerArea =
@@ -172,6 +207,13 @@ LightSource sourceOf(const Candidate& light) {
             source.radius = 0.4 * std::max(glm::length(light.edge1), glm::length(light.edge2));
             source.strength = light.weight / pi;
             break;
+        case LightKind::Sphere:
+            source.radius = glm::length(light.edge1);
+            source.bothFaces = false;  // without a normal it is one that faces all ways
+            source.strength = light.weight / pi;
+            break;
+        case LightKind::Quad:
+        case LightKind::Disc:
         case LightKind::Parallelogram:
             source.centre += 0.5 * (light.edge1 + light.edge2);
             source.radius = 0.4 * std::max(glm::length(light.edge1), glm::length(light.edge2));
@@ -200,8 +242,8 @@ LightSource sourceOf(const Candidate& light) {
 }
 
 /** Builds the tables that choose among the lights, and puts these in the tables' order. */
-void makeTables(std::vector<Candidate>& lights, std::span<const glm::vec3> positions, bool adaptive,
-                PackedScene& packed) {
+void makeTables(std::vector<Candidate>& lights, std::span<const glm::vec3> positions, std::size_t surfaces,
+                bool adaptive, PackedScene& packed) {
     std::vector<LightSource> sources;
     for (const Candidate& light : lights) sources.push_back(sourceOf(light));
     LightTables tables = lightTables(sources, positions, packed.environmentIrradiance, adaptive);
@@ -216,7 +258,7 @@ void makeTables(std::vector<Candidate>& lights, std::span<const glm::vec3> posit
     packed.lightGridOrigin = tables.origin;
     packed.lightGridScale = tables.scale;
     packed.lightCuts = tables.cuts;
-    packed.lightOfTriangle.assign(positions.size() / 3, 0);
+    packed.lightOfTriangle.assign(surfaces, 0);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].isSurface()) continue;
         packed.lightOfTriangle[lights[i].g] = std::uint32_t(i);
@@ -244,6 +286,8 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     if (options.sampleSurfaces) addSurfaces(scene, positions, surfaces, isMoving, candidates);
     packed.areaLights = !candidates.empty();
     const std::size_t areaCount = candidates.size();
+    const std::vector<glm::vec3> onShapes =
+        packed.hasShapes() ? surfaceTriangles(positions, surfaces) : std::vector<glm::vec3>();
     for (const Candidate& light : candidates) packed.triangleLights |= light.kind == LightKind::Triangle;
     addPunctual(scene, options.origin, candidates);
     packed.punctualLights = candidates.size() > areaCount;
@@ -254,7 +298,8 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     // With few lights the tables gain nothing that pays for reading them.
     const std::size_t few = options.lights == LightChoice::Adaptive ? kFewLights : 1;
     if (options.lights != LightChoice::Power && candidates.size() > few)
-        makeTables(candidates, positions, options.lights == LightChoice::Adaptive, packed);
+        makeTables(candidates, onShapes.empty() ? positions : onShapes, positions.size() / 3,
+                   options.lights == LightChoice::Adaptive, packed);
     for (std::size_t g = 0; g < packed.lightOfTriangle.size(); ++g)
         if (isMoving[surfaces[g].material]) packed.lightOfTriangle[g] = ~0u;
 
@@ -275,7 +320,8 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
                      glm::max(glm::abs(light.origin + light.edge2),
                               glm::abs(light.origin + light.edge1 + light.edge2)));
         const double unit = 0.5 * std::numeric_limits<float>::epsilon();
-        const double offset = surface ? 10.0 * unit * glm::dot(glm::abs(light.normal), far) : 0.0;
+        double offset = surface ? 10.0 * unit * glm::dot(glm::abs(light.normal), far) : 0.0;
+        if (light.kind == LightKind::Sphere) offset = 10.0 * unit;  // times what depends on the point
         packed.lights.push_back(texel(light.origin, table.slots[i].threshold));
         packed.lights.push_back(texel(light.edge1, table.slots[i].alias));
         packed.lights.push_back(texel(light.edge2, std::uint32_t(light.kind)));

@@ -75,6 +75,7 @@ std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces,
         std::vector<Covering> covering;  // of a run of equal hashes, in the order of g
         for (std::size_t i = first; end - first > 1 && i < end; ++i) {
             const std::size_t g = keys[i] & kIndexBits;
+            if (surfaces[g].shape > 0) continue;  // its vectors are no corners
             const Corners corners = canonical(&positions[g * 3]), other = turned(corners);
             const bool isCovered = std::any_of(covering.begin(), covering.end(), [&](const Covering& c) {
                 return c.corners == corners || (c.fromBothSides && !emits(g) && c.corners == other);

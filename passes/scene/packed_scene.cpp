@@ -8,9 +8,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <numeric>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -97,38 +98,66 @@ Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uin
     return tree;
 }
 
-/** Packs the accelerator; returns the triangle of every slot. */
-std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, const PackOptions& options,
+/** Shapes that no tree holds, ascending: all of few ones, those without end, and where another accelerator
+ * than the tree is asked for all. */
+std::vector<std::uint32_t> listedShapes(std::span<const pack::Surface> surfaces, const PackOptions& options) {
+    std::vector<std::uint32_t> all, endless;
+    for (std::uint32_t g = 0; g < surfaces.size(); ++g) {
+        if (surfaces[g].shape == 0) continue;
+        all.push_back(g);
+        if (surfaces[g].shape == 1 + std::uint32_t(Shape::Kind::Plane)) endless.push_back(g);
+    }
+    const bool tree = options.tree && options.accelerator == AcceleratorKind::Bvh;
+    return tree && all.size() > kListedShapes ? endless : all;
+}
+
+/** Packs the accelerator over triangles, or boxes of shapes, given by corners; returns the triangle of every
+ * slot. */
+std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> corners,
+                                      std::span<const pack::Surface> surfaces, const PackOptions& options,
                                       PackedScene& packed) {
-    std::vector<std::uint32_t> order(packed.triangleCount);
-    std::iota(order.begin(), order.end(), 0u);
-    packed.firstWrittenOut = packed.triangleCount <= kWrittenOutTriangles ? 0u : packed.triangleCount;
-    if (!options.tree || packed.triangleCount == 0) return order;
+    const std::vector<std::uint32_t> listed = listedShapes(surfaces, options);
+    packed.listedShapes = std::uint32_t(listed.size());
+    const std::uint32_t others = packed.triangleCount - packed.listedShapes;
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t g = 0; g < packed.triangleCount; ++g)
+        if (!std::binary_search(listed.begin(), listed.end(), g)) order.push_back(g);
+    const auto endWithListed = [&] {
+        order.insert(order.end(), listed.begin(), listed.end());
+        return std::move(order);
+    };
+    packed.firstWrittenOut = others <= kWrittenOutTriangles ? 0u : others;
+    if (!options.tree || others == 0) return endWithListed();
     const auto start = std::chrono::steady_clock::now();
     packed.accelerator = options.accelerator;
-    packed.firstWrittenOut = packed.triangleCount;
+    packed.firstWrittenOut = others;
     if (options.accelerator == AcceleratorKind::Bvh) {
-        const std::vector<std::uint32_t> large =
-            options.writeOutLargest && packed.triangleCount > kWrittenOutTriangles
-                ? pack::largeTriangles(positions, kWrittenOutBesideTree)
-                : std::vector<std::uint32_t>();
-        Bvh tree = treeWithout(positions, large);
-        packed.firstWrittenOut = packed.triangleCount - std::uint32_t(large.size());
+        std::vector<std::uint32_t> out = options.writeOutLargest && others > kWrittenOutTriangles
+                                             ? pack::largeTriangles(corners, kWrittenOutBesideTree)
+                                             : std::vector<std::uint32_t>();
+        std::erase_if(out, [&](std::uint32_t g) { return surfaces[g].shape > 0; });
+        packed.shapesInTree = packed.hasShapes() && listed.size() < packed.shapeCount;
+        std::vector<std::uint32_t> left;
+        std::ranges::merge(out, listed, std::back_inserter(left));
+        Bvh tree = treeWithout(corners, left);
+        packed.firstWrittenOut = others - std::uint32_t(out.size());
         packed.nodeCount = std::uint32_t(tree.nodes.size());
         packed.treeDepth = tree.depth;
         static_assert(sizeof(BvhNode) == 5 * sizeof(glm::uvec4));
         packed.nodes.resize(tree.nodes.size() * 5);
         std::memcpy(packed.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BvhNode));
         order = std::move(tree.order);
-        order.insert(order.end(), large.begin(), large.end());
+        order.insert(order.end(), out.begin(), out.end());
     } else {
-        Comparator built = buildComparator(options.accelerator, positions);
+        std::vector<glm::vec3> rest;
+        for (const std::uint32_t g : order) rest.insert(rest.end(), &corners[g * 3], &corners[g * 3] + 3);
+        Comparator built = buildComparator(options.accelerator, rest);
         packed.nodeCount = std::uint32_t(built.words.size());
         packed.treeDepth = built.depth;
         packed.nodes = std::move(built.words);
     }
     packed.treeSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return order;
+    return endWithListed();
 }
 
 }  // namespace
@@ -136,10 +165,9 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> positions, cons
 std::uint64_t PackedScene::bytes() const {
     return bytesOf(triangles) + bytesOf(triangleKeys) + bytesOf(normalKeys) + bytesOf(instanceFirst) +
            bytesOf(nodes) + bytesOf(normals) + bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) +
-           bytesOf(solidPoints) +
-           bytesOf(materials) + bytesOf(lights) + bytesOf(textures) + bytesOf(texels8) +
-           bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) + bytesOf(lightCells) +
-           bytesOf(lightRanges) + bytesOf(lightOfTriangle);
+           bytesOf(solidPoints) + bytesOf(materials) + bytesOf(lights) + bytesOf(textures) +
+           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) +
+           bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
 }
 
 KernelVariant acceleratorVariant(AcceleratorKind kind) {
@@ -151,6 +179,13 @@ PackedScene packScene(const Scene& scene, const PackOptions& options) {
 }
 
 PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options) {
+    if (options.shapesAsTriangles && scene.shapeCount() > 0) {
+        PackOptions triangles = options;
+        triangles.shapesAsTriangles = false;
+        PackedScene packed = packScene(withoutShapes(scene), triangles);
+        packed.rasterSkipped.emplace_back("exact shapes", "spheres, discs and planes are shown as triangles");
+        return packed;
+    }
     PackedScene packed;
     std::vector<pack::Surface> surfaces;
     std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
@@ -170,8 +205,14 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
     pack::environment(scene, options, packed);
     pack::lights(scene, positions, surfaces, options, packed);
 
+    for (const pack::Surface& surface : surfaces) packed.shapeCount += surface.shape > 0 ? 1 : 0;
+    std::vector<std::vector<glm::vec3>> boxes;
+    if (packed.hasShapes())
+        for (const auto& key : keys) boxes.push_back(pack::treeCorners(key, surfaces));
     const std::vector<std::uint32_t> order =
-        accelerate(keys.empty() ? positions : pack::waysBoxes(keys), options, packed);
+        accelerate(!keys.empty() ? pack::waysBoxes(boxes.empty() ? keys : boxes)
+                                 : (packed.hasShapes() ? pack::treeCorners(positions, surfaces) : positions),
+                   surfaces, options, packed);
     for (const auto& key : keys)
         for (const std::uint32_t g : order)
             for (std::uint32_t k = 0; k < 3; ++k) packed.triangleKeys.emplace_back(key[g * 3 + k], 0.0f);
@@ -179,17 +220,19 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
     for (std::uint32_t g : order) {
         packed.triangles.push_back(withBits(positions[g * 3 + 0], g));
         packed.triangles.push_back(withBits(positions[g * 3 + 1], surfaces[g].instance));
-        packed.triangles.push_back(withBits(positions[g * 3 + 2], surfaces[g].material));
+        packed.triangles.push_back(
+            withBits(positions[g * 3 + 2], surfaces[g].material | (surfaces[g].shape << 28)));
     }
+    const std::size_t others = order.size() - packed.listedShapes;
     packed.writtenOut.assign(packed.triangles.begin() + std::ptrdiff_t(packed.firstWrittenOut) * 3,
-                             packed.triangles.end());
-    for (std::size_t slot = packed.firstWrittenOut; slot < order.size(); ++slot) {
+                             packed.triangles.begin() + std::ptrdiff_t(others) * 3);
+    for (std::size_t slot = packed.firstWrittenOut; slot < others; ++slot) {
         const std::uint32_t material = surfaces[order[slot]].material;
         if (material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f))
             packed.writtenOutEmitters.push_back(order[slot]);
     }
     const NotShown absent = materialsNotShown(scene, materialUsed);
-    packed.skipped.assign(absent.anywhere.begin(), absent.anywhere.end());
+    packed.skipped.insert(packed.skipped.end(), absent.anywhere.begin(), absent.anywhere.end());
     packed.rasterSkipped.assign(absent.byRaster.begin(), absent.byRaster.end());
     return packed;
 }

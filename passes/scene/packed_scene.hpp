@@ -5,6 +5,7 @@
  * array is a whole number of 16-byte texels and is described beside its accessors in shaders/scene.
  */
 #include "engine/scene/comparators.hpp"
+#include "engine/scene/shape.hpp"
 
 #include <heliograph/kernel.hpp>
 #include <heliograph/renderer.hpp>
@@ -29,8 +30,21 @@ inline constexpr std::uint32_t kLightTexels = 6;
 /** Triangles up to which a scene is written out as code, and as many of a larger one beside its tree. */
 inline constexpr std::uint32_t kWrittenOutTriangles = 64, kWrittenOutBesideTree = 24;
 
+/** Shapes up to which all are tested one by one, beside any tree. */
+inline constexpr std::uint32_t kListedShapes = 16;
+
 /** How a light is sampled; the values are those of shaders/scene/lights.glsl. */
-enum class LightKind : std::uint32_t { Triangle, Parallelogram, Point, Spot, Directional, Environment };
+enum class LightKind : std::uint32_t {
+    Triangle,
+    Parallelogram,
+    Point,
+    Spot,
+    Directional,
+    Environment,
+    Quad,
+    Disc,
+    Sphere
+};
 /** Texels before the image in PackedScene::environmentMap; shaders/scene/environment.glsl names them. */
 inline constexpr std::uint32_t kEnvironmentHeader = 4;
 /** Steps of PackedScene::diffuseEnvironment round the equator and from pole to pole;
@@ -50,6 +64,8 @@ struct PackOptions {
     bool sampleSurfaces = true;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
     LightChoice lights = LightChoice::Power;
+    /** Triangles take the place of shapes. */
+    bool shapesAsTriangles = false;
     /** PackedScene::diffuseEnvironment is made. */
     bool diffuseEnvironment = false;
     /** The point of the world that becomes the packed scene's origin, so that floats resolve a scene that
@@ -63,7 +79,8 @@ struct PackOptions {
 struct PackedScene {
     /** 3 texels a slot: v0.xyz | bits(g), v1.xyz | bits(instance), v2.xyz | bits(material). World space
      * about PackOptions::origin, transformed in double and rounded once; counter-clockwise is front, mirrored
-     * transforms included. */
+     * transforms included. A shape takes one slot and one g: centre, a and b of a PlacedShape, and 1 more
+     * than its kind in the upper 4 bits of the material's word. */
     std::vector<glm::vec4> triangles;
     /** First g of every instance, and the number of triangles at the end. */
     std::vector<std::uint32_t> instanceFirst;
@@ -115,7 +132,11 @@ struct PackedScene {
     std::vector<glm::vec4> diffuseEnvironment;
     double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
     std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
-    std::uint32_t triangleCount = 0;
+    std::uint32_t triangleCount = 0;                ///< with shapes
+    std::uint32_t shapeCount = 0;
+    std::uint32_t listedShapes = 0;  ///< shapes in the last slots, which are in no tree
+    bool shapesInTree = false, spheres = false, flatShapes = false;
+    bool hasShapes() const { return spheres || flatShapes; }
     std::uint32_t lightCount = 0;
     std::uint32_t lightBits = 1;  ///< the light table has 2^lightBits rows, filler after the lights
     std::uint32_t nodeCount = 0;  ///< of the tree, holes of its blocks included
@@ -173,11 +194,21 @@ struct Surface {
     std::uint32_t instance = 0;
     std::uint32_t material = 0;  ///< into the packed materials
     bool moves = false;
+    std::uint32_t shape = 0;  ///< 1 more than its kind; 0: a triangle
 };
+
+/** What a shape's three vectors among the positions (centre, a, b) say. */
+PlacedShape shapeOf(const glm::vec3* vectors, std::uint32_t shape);
 
 /** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
 std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
                                 std::vector<Surface>& surfaces);
+/** Corners of triangles with the same boxes as the shapes, and the triangles themselves: what a tree is built
+ * of. */
+std::vector<glm::vec3> treeCorners(std::span<const glm::vec3> positions, std::span<const Surface> surfaces);
+/** Triangles, and in place of shapes ones on them: where surfaces are, for estimates. */
+std::vector<glm::vec3> surfaceTriangles(std::span<const glm::vec3> positions,
+                                        std::span<const Surface> surfaces);
 /** Triangles that lie exactly on an opaque one of lower g and face as it does become points, which nothing
  * meets: the lower index wins a tie. Else rounding would let the one shadow the other, and its light would
  * count twice. `fromBothSides`: also those that face the other way, where neither emits; for rays, which meet

@@ -21,6 +21,10 @@ const RegisterFeature normals{
     {"geometry.normals", "surfaces are flat: no vertex normals are stored or read", [](const Scene& scene) {
          return anyPrimitive(scene, [](const Primitive& p) { return !p.normals.empty(); });
      }}};
+const RegisterFeature shapes{
+    {"geometry.shapes", "all surfaces are triangles: nothing else is intersected", [](const Scene& scene) {
+         return anyPrimitive(scene, [](const Primitive& p) { return p.shape.has_value(); });
+     }}};
 const RegisterFeature colors{
     {"geometry.colors", "no vertex colours are stored or read", [](const Scene& scene) {
          return anyPrimitive(scene, [](const Primitive& p) { return !p.colors.empty(); });

@@ -172,6 +172,7 @@ Json describeScene(const Scene& scene) {
                    {"vertices", vertices},
                    {"instances", instances.size()},
                    {"triangles", scene.triangleCount()},
+                   {"shapes", scene.shapeCount()},
                    {"skins", scene.skins.size()},
                    {"morph_targets", morphTargets(scene)},
                    {"materials", scene.materials.size()},

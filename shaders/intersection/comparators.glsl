@@ -48,7 +48,12 @@ void testTriangle(RayShear ray, int candidate, const bool any, int source, ivec2
     hit = hit && (isNearer(distance, nearest.distance) ||
                   (!any && distance == nearest.distance && candidate < nearest.slot));
     hit = hit && candidate != source;
-    if (any) hit = hit && (candidate < target.x || candidate > target.y);
+#ifdef SHAPES
+    const int g = int(texelFetch(uTriangles, candidate * 3).w);  // shapes are in the last slots
+#else
+    const int g = candidate;
+#endif
+    if (any) hit = hit && (g < target.x || g > target.y);
     nearest.distance = hit ? distance : nearest.distance;
     nearest.slot = hit ? candidate : nearest.slot;
 }

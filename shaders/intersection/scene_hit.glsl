@@ -8,6 +8,9 @@
 #include "shaders/intersection/traverse.glsl"
 #endif
 #include "shaders/scene/features.glsl"
+#ifdef SHAPES
+#include "shaders/intersection/shape.glsl"
+#endif
 
 // Defines testAll() and testAny() where the scene is written out (passes/pathtrace/unrolled_scene.hpp).
 #include "generated.glsl"
@@ -16,7 +19,7 @@
 const ivec2 NO_TARGET = ivec2(1, 0);
 
 /** Nearest triangle along the ray: its slot, -1 for none, and its distance. Returns turns of loops taken. */
-int closestHit(vec3 origin, vec3 direction, int source, out float distance, out int slot) {
+int closestTriangle(vec3 origin, vec3 direction, int source, out float distance, out int slot) {
     distance = INFINITE_DISTANCE;
     slot = -1;
     if (TRIANGLE_COUNT == 0) return 0;
@@ -39,9 +42,8 @@ int closestHit(vec3 origin, vec3 direction, int source, out float distance, out 
 #endif
 }
 
-/** Whether anything lies within (0, limit) along the ray; limit <= 0 asks nothing. What the ray leaves (slot)
- * and what it goes to (range of g) do not count: rounding cannot make a light shadow itself. */
-int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit, out bool hit) {
+/** Whether a triangle lies within (0, limit), see occluded(). */
+int triangleBlocks(vec3 origin, vec3 direction, int source, ivec2 target, float limit, out bool hit) {
     hit = false;
     if (TRIANGLE_COUNT == 0) return 0;
 #ifdef UNROLLED_SCENE
@@ -61,5 +63,26 @@ int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit,
 #endif
     return steps;
 #endif
+}
+
+/** Nearest surface along the ray: its slot, -1 for none, and its distance. Returns turns of loops taken. */
+int closestHit(vec3 origin, vec3 direction, int source, out float distance, out int slot) {
+    int turns = closestTriangle(origin, direction, source, distance, slot);
+#ifdef SHAPES
+    if (LISTED_SHAPES > 0) closestListed(origin, direction, source, distance, slot);
+    turns += LISTED_SHAPES;
+#endif
+    return turns;
+}
+
+/** Whether anything lies within (0, limit) along the ray; limit <= 0 asks nothing. What the ray leaves (slot)
+ * and what it goes to (range of g) do not count: rounding cannot make a light shadow itself. */
+int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit, out bool hit) {
+    int turns = triangleBlocks(origin, direction, source, target, limit, hit);
+#ifdef SHAPES
+    if (LISTED_SHAPES > 0 && limit > 0.0) hit = hit || listedBlocks(origin, direction, source, target, limit);
+    turns += LISTED_SHAPES;
+#endif
+    return turns;
 }
 #endif

@@ -19,6 +19,9 @@
  */
 #include "shaders/intersection/triangle.glsl"
 #include "shaders/scene/triangles.glsl"
+#ifdef SHAPES
+#include "shaders/intersection/shape.glsl"
+#endif
 
 /** The tree, 5 texels a node; see BvhNode. */
 layout(set = 0, binding = 21) uniform usamplerBuffer uNodes;
@@ -50,6 +53,9 @@ uint orderedMask(uint mask, uint octant) {
 /** A ray on its way through the tree. */
 struct Traversal {
     RayShear ray;
+#ifdef SHAPES
+    vec3 direction;
+#endif
     vec3 inverse;
     uint octant;         ///< bit per axis along which the direction is negative
     uint group;          ///< siblings still to visit: first child << 8 | mask of those hit, bit s ^ octant for slot s
@@ -106,6 +112,9 @@ uint exchangeOnStack(uint group, bool push, bool pop) {
 Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, float limit) {
     Traversal t;
     t.ray = shearOf(origin, direction);
+#ifdef SHAPES
+    t.direction = direction;
+#endif
     t.inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
     t.octant = (t.inverse.x < 0.0 ? 1u : 0u) | (t.inverse.y < 0.0 ? 2u : 0u) | (t.inverse.z < 0.0 ? 4u : 0u);
     t.group = 1u << t.octant;
@@ -191,8 +200,19 @@ void visitTriangle(inout Traversal t, const bool any) {
     const int g = int(first.w);
     float distance;
     bool hit = lineMeetsTriangle(t.ray, a, b, c, distance);
+    bool counts = candidate != t.source;
+#ifdef SHAPES
+    if (SHAPES_IN_TREE) {
+        const Triangle shape = fetchTriangle(candidate);
+        float there;
+        const bool meets = meetsShape(t.ray, t.direction, shape, !counts, INFINITE_DISTANCE, there);
+        hit = shape.shape > 0 ? meets : hit;
+        distance = shape.shape > 0 ? there : distance;
+        counts = counts || shape.shape > 0;
+    }
+#endif
     hit = hit && (isNearer(distance, t.nearest) || (!any && distance == t.nearest && g < t.g));
-    hit = hit && candidate != t.source;
+    hit = hit && counts;
     if (any) hit = hit && (g < t.target.x || g > t.target.y);
     t.nearest = hit ? distance : t.nearest;
     t.slot = hit ? candidate : t.slot;

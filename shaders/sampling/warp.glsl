@@ -33,6 +33,12 @@ vec3 uniformDirection(vec3 n, vec2 u) {
     return tangent * disk.x + bitangent * disk.y + n * u.x;
 }
 
+/** A direction, uniform over the sphere. */
+vec3 uniformSphere(vec2 u) {
+    const float z = 1.0 - 2.0 * u.x;
+    return vec3(2.0 * sqrt(u.x * (1.0 - u.x)) * unitCircle(u.y), z);
+}
+
 /** A direction about the unit vector n with density `cosine` / pi over solid angle. */
 vec3 cosineDirection(vec3 n, vec2 u, out float cosine) {
     vec3 tangent, bitangent;

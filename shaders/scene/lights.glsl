@@ -12,6 +12,10 @@
 #ifdef ENVIRONMENT_IMAGE
 #include "shaders/scene/environment.glsl"
 #endif
+#ifdef SHAPES
+#include "shaders/intersection/shape.glsl"
+#include "shaders/scene/sphere_light.glsl"
+#endif
 #ifdef LIGHT_TABLES
 #include "shaders/scene/light_tables.glsl"
 #else
@@ -23,18 +27,18 @@ int lightPlace(vec3 p, vec3 n) {
 
 /**
  * 6 texels a light (kLightTexels):
- * 0: corner or position | bits of the alias slot's threshold (passes/scene/alias_table.hpp)
- * 1: edge | bits of the row taken otherwise
- * 2: edge (spot: scale and offset of the cone; punctual: z is the range, 0 for none) | bits of the kind
+ * 0: corner, centre or position | bits of the alias slot's threshold (passes/scene/alias_table.hpp)
+ * 1: edge (sphere: axis X, as long as the radius) | bits of the row taken otherwise
+ * 2: edge (sphere: axis Y; spot: scale and offset of the cone; punctual: z is the range, 0 for none) | bits of the kind
  * 3: radiance (intensity; irradiance) RGB | chance density per area, negative where both faces emit
  *    (punctual: chance to be chosen)
- * 4: unit normal (spot, directional: direction of the light) | offset against rounding, along the normal
+ * 4: unit normal (sphere: 0; spot, directional: direction of the light) | offset against rounding, along the normal
  * 5: bits of g, bits of material, chance to be chosen, 1 / area
  */
 layout(set = 0, binding = 26) uniform usamplerBuffer uLights;
 const int LIGHT_TEXELS = 6;
 const uint LIGHT_TRIANGLE = 0u, LIGHT_PARALLELOGRAM = 1u, LIGHT_POINT = 2u, LIGHT_SPOT = 3u, LIGHT_DIRECTIONAL = 4u,
-           LIGHT_ENVIRONMENT = 5u;
+           LIGHT_ENVIRONMENT = 5u, LIGHT_QUAD = 6u, LIGHT_DISC = 7u, LIGHT_SPHERE = 8u;
 
 #include "generated.glsl"
 #ifdef UNROLLED_LIGHT
@@ -43,6 +47,13 @@ const uvec4 ONLY_LIGHT[LIGHT_TEXELS] = UNROLLED_LIGHT;
 #define LIGHT_ROW(first, i) ONLY_LIGHT[i]
 #else
 #define LIGHT_ROW(first, i) texelFetch(uLights, first + i)
+#endif
+
+/** Points of lights may pass with what is left of alpha. */
+#ifdef SURFACE_MATERIALS
+const bool SEEN_THROUGH = HAS_ALPHA;
+#else
+const bool SEEN_THROUGH = false;
 #endif
 
 struct LightSample {
@@ -82,7 +93,7 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
     const float perArea = uintBitsToFloat(LIGHT_ROW(first, 5).w);
     strength.w = chance * (perArea > 0.0 ? (strength.w < 0.0 ? -perArea : perArea) : 1.0);
 #endif
-    const vec4 facing = uintBitsToFloat(LIGHT_ROW(first, 4));
+    const vec4 facingOf = uintBitsToFloat(LIGHT_ROW(first, 4));
     const uint kind = edge2Bits.w;
 
     LightSample result = LightSample(vec3(0.0), false, vec3(0.0), vec3(0.0), ivec2(1, 0), 0.0);
@@ -90,8 +101,21 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
         const vec2 u = vec2(unitFloat(random.x), unitFloat(random.y));
         // The unit square folded along its diagonal covers a triangle evenly.
         const bool fold = HAS_TRIANGLE_LIGHTS && kind == LIGHT_TRIANGLE && u.x + u.y > 1.0;
-        const vec2 s = fold ? 1.0 - u : u;
-        const vec3 q = corner.xyz + edge1.xyz * s.x + edge2 * s.y;
+        vec2 s = fold ? 1.0 - u : u;
+#ifdef SHAPES
+        if (kind == LIGHT_DISC) s = 0.5 + 0.5 * sqrt(u.x) * unitCircle(u.y);
+#endif
+        vec3 q = corner.xyz + edge1.xyz * s.x + edge2 * s.y;
+        vec4 facing = facingOf;
+#ifdef SHAPES
+        const float radius = length(edge1.xyz);
+        const bool isSphere = HAS_SPHERES && kind == LIGHT_SPHERE;
+        if (isSphere) {
+            facing.xyz = sphereNormalTowards(p, corner.xyz, radius, u);
+            facing.w *= dot(abs(facing.xyz), abs(corner.xyz) + radius);
+            q = corner.xyz + radius * facing.xyz;
+        }
+#endif
         const vec3 toLight = q - p;
         const float squared = dot(toLight, toLight);
         const float distance = sqrt(squared);
@@ -102,27 +126,39 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
         const float towards = bothFaces ? abs(cosine) : cosine;
         const bool visible = towards > 0.0 && squared > 0.0;
         result.density = visible ? abs(strength.w) * squared / towards : 0.0;
+#ifdef SHAPES
+        if (isSphere && visible) result.density = abs(strength.w) * sphereDensity(p, corner.xyz, radius, distance, towards);
+#endif
         result.radiance = visible ? strength.rgb / result.density : vec3(0.0);
         const uvec4 identity = LIGHT_ROW(first, 5);
         result.triangles = ivec2(int(identity.x), int(identity.x) + (kind == LIGHT_PARALLELOGRAM ? 1 : 0));
+        vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
+        bool isWhole = kind == LIGHT_TRIANGLE;
+#ifdef SHAPES
+        // The coordinates of passes/pathtrace/surface.glsl.
+        isWhole = isWhole || kind >= LIGHT_QUAD;
+        if (kind >= LIGHT_QUAD) b = vec3(3.0 - 2.0 * (s.x + s.y), 2.0 * s - 1.0);
+        if (isSphere && (HAS_EMISSION_TEXTURES || SEEN_THROUGH)) {
+            const vec2 uv = sphereCoordinates(facing.xyz, edge1.xyz, edge2);
+            b = vec3(1.0 - uv.x - uv.y, uv);
+        }
+#endif
         if (HAS_EMISSION_TEXTURES) {
             const int g = int(identity.x), material = int(identity.y);
-            // Only whole triangles carry textures (parallelograms are merged where emission is constant).
-            const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
-            if (kind == LIGHT_TRIANGLE) result.radiance *= materialTexture(material, 5, texcoords(g, b)).rgb;
+            // Only whole triangles and shapes carry textures (parallelograms are merged where emission is constant).
+            if (isWhole) result.radiance *= materialTexture(material, 5, texcoords(g, b)).rgb;
         }
 #ifdef SURFACE_MATERIALS
         // A ray that happens to come here passes with what is left of alpha.
         if (HAS_ALPHA) {
-            const vec3 b = vec3(1.0 - s.x - s.y, s.x, s.y);
-            const bool isSurface = kind == LIGHT_TRIANGLE || kind == LIGHT_PARALLELOGRAM;
+            const bool isSurface = isWhole || kind == LIGHT_PARALLELOGRAM;
             if (isSurface) result.radiance *= opacity(int(identity.y), int(identity.x), b);
         }
 #endif
     }
-    if (HAS_PUNCTUAL_LIGHTS && (!HAS_AREA_LIGHTS || kind >= LIGHT_POINT)) {
+    if (HAS_PUNCTUAL_LIGHTS && (!HAS_AREA_LIGHTS || (kind >= LIGHT_POINT && kind < LIGHT_ENVIRONMENT))) {
         const bool directional = kind == LIGHT_DIRECTIONAL;
-        const vec3 toLight = directional ? -facing.xyz : corner.xyz - p;
+        const vec3 toLight = directional ? -facingOf.xyz : corner.xyz - p;
         const float squared = dot(toLight, toLight);
         result.direction = toLight * inversesqrt(max(squared, 1e-37));
         result.target = directional ? result.direction : corner.xyz;
@@ -131,7 +167,7 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
         result.density = 0.0;
         float attenuation = directional ? 1.0 : 1.0 / max(squared, 1e-37);
         if (kind == LIGHT_SPOT) {
-            const float cone = clamp(-dot(facing.xyz, result.direction) * edge2.x + edge2.y, 0.0, 1.0);
+            const float cone = clamp(-dot(facingOf.xyz, result.direction) * edge2.x + edge2.y, 0.0, 1.0);
             attenuation *= cone * cone;
         }
         if (!directional && edge2.z > 0.0) {

@@ -3,7 +3,7 @@
 /** @file
  * World-space triangles. "Slot" is the place in the buffer (the tree's order), g the index in scene order.
  * Read as unsigned words, so that the integers among them can never be flushed as denormal floats. A scene that moves
- * is compiled with MOTION_KEYS.
+ * is compiled with MOTION_KEYS, one with shapes beside its triangles with SHAPES (shaders/intersection/shape.glsl).
  */
 #include "shaders/scene/features.glsl"
 
@@ -17,6 +17,9 @@ struct Triangle {
     int g;         ///< index in scene order: of normals, texcoords, colours
     int instance;
     int material;
+#ifdef SHAPES
+    int shape;  ///< SHAPE_..., whose centre is v0, and v1 and v2 its axes; 0 for a triangle
+#endif
 };
 
 #ifdef MOTION_KEYS
@@ -42,17 +45,39 @@ vec3 movingCorner(int slot, int corner) {
 }
 #endif
 
-Triangle fetchTriangle(int slot) {
-#ifdef MOTION_KEYS
-    const uvec4 ids = uvec4(texelFetch(uTriangles, slot * 3).w, texelFetch(uTriangles, slot * 3 + 1).w,
-                            texelFetch(uTriangles, slot * 3 + 2).w, 0u);
-    return Triangle(movingCorner(slot, 0), movingCorner(slot, 1), movingCorner(slot, 2), int(ids.x), int(ids.y),
-                    int(ids.z));
+#if defined(MOTION_KEYS) && defined(SHAPES)
+/** Length at that time of what stands in place of a corner. */
+float movingLength(int slot, int corner) {
+    const int at = (motionKey * TRIANGLE_COUNT + slot) * 3 + corner;
+    return mix(length(texelFetch(uTriangleKeys, at).xyz), length(texelFetch(uTriangleKeys, at + TRIANGLE_COUNT * 3).xyz),
+               motionFraction);
+}
 #endif
+
+Triangle fetchTriangle(int slot) {
     const uvec4 a = texelFetch(uTriangles, slot * 3);
     const uvec4 b = texelFetch(uTriangles, slot * 3 + 1);
     const uvec4 c = texelFetch(uTriangles, slot * 3 + 2);
-    return Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), int(a.w), int(b.w),
-                    int(c.w));
+    Triangle t;
+    t.v0 = uintBitsToFloat(a.xyz);
+    t.v1 = uintBitsToFloat(b.xyz);
+    t.v2 = uintBitsToFloat(c.xyz);
+    t.g = int(a.w);
+    t.instance = int(b.w);
+    t.material = int(c.w);
+#ifdef MOTION_KEYS
+    t.v0 = movingCorner(slot, 0);
+    t.v1 = movingCorner(slot, 1);
+    t.v2 = movingCorner(slot, 2);
+#endif
+#ifdef SHAPES
+    t.shape = t.material >> 28;
+    t.material &= 0x0fffffff;
+#ifdef MOTION_KEYS
+    // Axes that turn are shorter between keys: a sphere keeps its size.
+    if (t.shape == 1) t.v1 *= movingLength(slot, 1) / length(t.v1);
+#endif
+#endif
+    return t;
 }
 #endif

@@ -92,6 +92,18 @@ const std::vector<Feature>& features() {
              for (int i = 0; i < 3; ++i) b.pointLight({0.1f * float(i), 0, 0}, glm::vec3(1.0f + float(i)));
          },
          {"uLights", "uLightSlots"}},
+        {"shapes",
+         [](SceneBuilder& b) {
+             Primitive ball;
+             ball.shape = Shape{.radius = 0.25f};
+             ball.material = 0;
+             Node node;
+             node.mesh = int(b.scene.meshes.size());
+             b.scene.meshes.push_back({"ball", {ball}});
+             b.scene.roots.push_back(int(b.scene.nodes.size()));
+             b.scene.nodes.push_back(node);
+         },
+         {}},
         {"vertex normals",
          [](SceneBuilder& b) {
              forAll(b.scene, [](Primitive& p) { p.normals.assign(p.positions.size(), glm::vec3(0, 0, 1)); });

@@ -101,6 +101,49 @@ TEST_F(GltfExtras, NodesHoldMeters) {
     EXPECT_THROW(withMeter({{"quantity", "colour"}}), InputError);
 }
 
+TEST_F(GltfExtras, NodesTakeShapes) {
+    const auto withShape = [this](const json& shape) {
+        GltfDocument file = GltfDocument::triangle();
+        file.doc["materials"] = {json::object(), {{"name", "second"}}};
+        file.doc["nodes"].push_back({{"name", "ball"}, {"extras", {{"heliograph", {{"shape", shape}}}}}});
+        file.doc["scenes"][0]["nodes"].push_back(int(file.doc["nodes"].size()) - 1);
+        const Scene scene = load(file);
+        EXPECT_NO_THROW(scene.validate());
+        EXPECT_EQ(scene.triangleCount(), 1u);
+        EXPECT_EQ(scene.shapeCount(), 1u);
+        return scene;
+    };
+    const auto shapeOf = [](const Scene& scene) {
+        return scene.meshes.at(std::size_t(scene.nodes.back().mesh)).primitives.at(0);
+    };
+    using Kind = Shape::Kind;
+    const std::pair<const char*, Kind> kinds[] = {
+        {"sphere", Kind::Sphere}, {"plane", Kind::Plane}, {"disc", Kind::Disc}, {"quad", Kind::Quad}};
+    std::vector<std::string> names;
+    for (const auto& [name, kind] : kinds) {
+        EXPECT_EQ(shapeOf(withShape({{"kind", name}})).shape, Shape{.kind = kind});
+        names.push_back(name);
+    }
+    EXPECT_EQ(schema()["definitions"]["shape"]["properties"]["kind"]["enum"], names);
+    const Scene ball = withShape({{"kind", "sphere"}, {"radius", 2.5}, {"material", 1}});
+    EXPECT_EQ(shapeOf(ball).shape->radius, 2.5f);
+    EXPECT_EQ(shapeOf(ball).material, 1);
+    EXPECT_EQ(ball.meshes.back().name, "ball");
+    EXPECT_EQ(ball.bounds().lower, glm::dvec3(-2.5));
+    const Scene flat = withShape({{"kind", "quad"}, {"width", 4}, {"height", 0.5}});
+    EXPECT_EQ(shapeOf(flat).shape->width, 4.0f);
+    EXPECT_EQ(shapeOf(flat).shape->height, 0.5f);
+    EXPECT_EQ(shapeOf(flat).material, -1);
+    for (const json& bad :
+         {json{{"kind", "cone"}}, json{{"radius", 1}}, json{{"kind", "quad"}, {"radius", 1}},
+          json{{"kind", "sphere"}, {"width", 1}}, json{{"kind", "plane"}, {"height", 1}},
+          json{{"kind", "sphere"}, {"radius", 0}}, json{{"kind", "disc"}, {"material", 2}}})
+        EXPECT_THROW(withShape(bad), InputError) << bad.dump();
+    GltfDocument both = GltfDocument::triangle();
+    both.doc["nodes"][0]["extras"] = {{"heliograph", {{"shape", {{"kind", "sphere"}}}}}};
+    EXPECT_THROW(load(both), InputError);
+}
+
 TEST_F(GltfExtras, MaterialsTakeASolidTexture) {
     using Pattern = SolidTexture::Pattern;
     const std::pair<const char*, Pattern> patterns[] = {{"noise", Pattern::Noise},

@@ -161,7 +161,24 @@ struct MorphTarget {
     std::vector<glm::vec3> tangents;
 };
 
-/** Triangles with one material. Attributes are empty or one per position. */
+/** A surface that a formula gives, in the space of its mesh. Flat ones lie in the XY plane and face +Z; a
+ * sphere has its poles on Y, with u = 1/2 + atan2(x, z) / 2 pi and v = acos(y) / pi. Texture coordinates of a
+ * disc or quad run from 0 to 1 over the rectangle around it, u along X and v against Y; of a plane once a
+ * unit. Nodes may place flat shapes in any way, and spheres with a scale that is the same along all axes. */
+struct Shape {
+    enum class Kind : std::uint8_t {
+        Sphere,
+        Plane,  ///< without end
+        Disc,
+        Quad
+    };
+    Kind kind = Kind::Sphere;
+    float radius = 1;             ///< Sphere, Disc
+    float width = 1, height = 1;  ///< Quad, along X and Y
+    bool operator==(const Shape&) const = default;
+};
+
+/** Triangles with one material, or one shape. Attributes are empty or one per position. */
 struct Primitive {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;                 ///< unit, or empty: flat-shaded
@@ -178,6 +195,7 @@ struct Primitive {
      * 1. Both empty for a primitive that no skin moves. */
     std::vector<std::vector<glm::u16vec4>> joints;
     std::vector<std::vector<glm::vec4>> weights;
+    std::optional<Shape> shape{};  ///< in place of triangles: there are no positions then
 };
 
 struct Mesh {
@@ -282,7 +300,7 @@ struct Environment {
 
 /** A mesh placed in the world: one per node that holds a mesh (or one per Node::copies), in depth-first order
  * from Scene::roots. Its index is the instance id of outputs; triangle ids count a mesh's triangles over its
- * primitives in order. */
+ * primitives in order, of which a shape is one. */
 struct Instance {
     int node = -1;
     int mesh = -1;
@@ -333,8 +351,9 @@ struct Scene {
     std::vector<PlacedCamera> placedCameras() const;
     std::vector<PlacedLight> placedLights() const;
     std::vector<PlacedMeter> placedMeters() const;
-    /** World bounds of all instances' finite vertices (those that indices use; every index must be in range),
-     * and number of triangles with every instance counted. */
+    /** World bounds of all instances' finite vertices (those that indices use; every index must be in range)
+     * and of their shapes (of a plane its origin alone), and number of triangles with every instance counted.
+     */
     struct Bounds {
         glm::dvec3 lower{std::numeric_limits<double>::infinity()};
         glm::dvec3 upper{-std::numeric_limits<double>::infinity()};
@@ -342,6 +361,8 @@ struct Scene {
     };
     Bounds bounds() const;
     std::uint64_t triangleCount() const;
+    /** Number of shapes, with every instance counted. */
+    std::uint64_t shapeCount() const;
 };
 
 /** Reads a PNG, JPEG, WebP, OpenEXR, HDR, TIFF, BMP or TGA file: 8 or 16 bits as stored, all else as floats.

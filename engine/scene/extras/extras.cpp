@@ -163,6 +163,51 @@ Environment environmentOf(const std::string& file, const std::string& pointer, c
     return to;
 }
 
+Meter meterOf(const std::string& file, const std::string& place, const json& from, const std::string& name) {
+    using Quantity = Meter::Quantity;
+    constexpr std::pair<const char*, Quantity> quantities[] = {{"irradiance", Quantity::Irradiance},
+                                                               {"flux", Quantity::Flux},
+                                                               {"radiance", Quantity::Radiance},
+                                                               {"intensity", Quantity::Intensity}};
+    Meter meter;
+    meter.name = name;
+    readName(from["quantity"], quantities, meter.quantity);
+    const bool isPoint = meter.quantity == Quantity::Irradiance || meter.quantity == Quantity::Radiance;
+    for (const char* side : {"width", "height"}) {
+        if (isPoint && from.contains(side))
+            throw InputError(file, place + side, "belongs to a meter of flux or intensity", "leave it out");
+    }
+    meter.width = from.value("width", meter.width);
+    meter.height = from.value("height", meter.height);
+    return meter;
+}
+
+Primitive shapeOf(const std::string& file, const std::string& place, const json& from,
+                  std::size_t materials) {
+    using Kind = Shape::Kind;
+    constexpr std::pair<const char*, Kind> shapes[] = {
+        {"sphere", Kind::Sphere}, {"plane", Kind::Plane}, {"disc", Kind::Disc}, {"quad", Kind::Quad}};
+    Primitive primitive;
+    Shape& shape = primitive.shape.emplace();
+    readName(from["kind"], shapes, shape.kind);
+    const bool isRound = shape.kind == Kind::Sphere || shape.kind == Kind::Disc;
+    const auto belongs = [&](const char* member, bool has, const char* what) {
+        if (from.contains(member) && !has)
+            throw InputError(file, place + member, fmt::format("belongs to {}", what), "leave it out");
+    };
+    belongs("radius", isRound, "a sphere or disc");
+    belongs("width", shape.kind == Kind::Quad, "a quad");
+    belongs("height", shape.kind == Kind::Quad, "a quad");
+    shape.radius = from.value("radius", shape.radius);
+    shape.width = from.value("width", shape.width);
+    shape.height = from.value("height", shape.height);
+    primitive.material = from.value("material", -1);
+    if (primitive.material >= int(materials))
+        throw InputError(file, place + "material", fmt::format("is {}", primitive.material),
+                         fmt::format("name one of the file's {} materials", materials));
+    return primitive;
+}
+
 }  // namespace
 
 void check(const std::string& file, const json& document) {
@@ -212,28 +257,22 @@ void readCamera(const std::string& file, const json& object, int index, Camera& 
     camera.exposure = to;
 }
 
-void readNode(const std::string& file, const json& object, std::size_t index, Node& node, Scene& scene) {
+void readNode(const std::string& file, const json& object, std::size_t index, std::size_t materials,
+              Node& node, Scene& scene) {
     const json* const own = extrasOf(object);
-    if (own == nullptr || !own->contains("meter")) return;
-    const json& from = (*own)["meter"];
-    using Quantity = Meter::Quantity;
-    constexpr std::pair<const char*, Quantity> quantities[] = {{"irradiance", Quantity::Irradiance},
-                                                               {"flux", Quantity::Flux},
-                                                               {"radiance", Quantity::Radiance},
-                                                               {"intensity", Quantity::Intensity}};
-    Meter meter;
-    meter.name = node.name;
-    readName(from["quantity"], quantities, meter.quantity);
-    const bool isPoint = meter.quantity == Quantity::Irradiance || meter.quantity == Quantity::Radiance;
-    for (const char* side : {"width", "height"}) {
-        if (isPoint && from.contains(side))
-            throw InputError(file, fmt::format("/nodes/{}/extras/heliograph/meter/{}", index, side),
-                             "belongs to a meter of flux or intensity", "leave it out");
+    if (own == nullptr) return;
+    const std::string place = fmt::format("/nodes/{}/extras/heliograph/", index);
+    if (own->contains("meter")) {
+        node.meter = int(scene.meters.size());
+        scene.meters.push_back(meterOf(file, place + "meter/", (*own)["meter"], node.name));
     }
-    meter.width = from.value("width", meter.width);
-    meter.height = from.value("height", meter.height);
-    node.meter = int(scene.meters.size());
-    scene.meters.push_back(std::move(meter));
+    if (own->contains("shape")) {
+        if (node.mesh >= 0)
+            throw InputError(file, place + "shape", "stands at a node that has a mesh",
+                             "give the shape a node of its own");
+        node.mesh = int(scene.meshes.size());
+        scene.meshes.push_back({node.name, {shapeOf(file, place + "shape/", (*own)["shape"], materials)}});
+    }
 }
 
 void readScene(const std::string& file, const std::string& pointer, const json& object, ImageBudget& budget,

@@ -22,9 +22,10 @@ void check(const std::string& file, const nlohmann::json& document);
 void readMaterial(const nlohmann::json& object, Material& material);
 /** `index`: of the camera in the document. */
 void readCamera(const std::string& file, const nlohmann::json& object, int index, Camera& camera);
-/** A node's meter is appended to Scene::meters. `index`: of the node in the document. */
-void readNode(const std::string& file, const nlohmann::json& object, std::size_t index, Node& node,
-              Scene& scene);
+/** A node's meter is appended to Scene::meters, its shape as a mesh to Scene::meshes. `index`: of the node in
+ * the document, which has so many `materials`. */
+void readNode(const std::string& file, const nlohmann::json& object, std::size_t index, std::size_t materials,
+              Node& node, Scene& scene);
 void readScene(const std::string& file, const std::string& pointer, const nlohmann::json& object,
                ImageBudget& budget, Scene& scene);
 

@@ -153,7 +153,9 @@ Node nodeOf(const Asset& asset, const json& from, std::size_t index, MemoryBudge
         node.skin = skin;
     }
     node.camera = integerOr(from, "camera", -1);
-    extras::readNode(asset.file(), from, index, node, scene);
+    const std::size_t meshes = scene.meshes.size();
+    extras::readNode(asset.file(), from, index, listOf(asset.document(), "materials").size(), node, scene);
+    if (scene.meshes.size() > meshes) memory.take("nodes", sizeof(Mesh) + sizeof(Primitive), 0);
     for (const auto& [name, value] : extensionsOf(from).items()) {
         if (name == "KHR_lights_punctual") {
             node.light = integerOr(value, "light", -1);
