@@ -52,9 +52,12 @@ TEST(LensTable, FocalLengths) {
     EXPECT_NEAR(paraxial(ball).focalLength, 1.5L, 1e-6L);
     EXPECT_NEAR(paraxial(ball).filmDistance, 0.5L, 1e-6L);  // half a radius behind the ball
     const LensTable gauss = doubleGauss();
-    fmt::print("double Gauss: focal length {:.4f} mm, f/{:.4f}, film at {:.4f} mm\n",
-               paraxial(gauss).focalLength, paraxial(gauss).fNumber, paraxial(gauss).filmDistance);
-    EXPECT_NEAR(paraxial(gauss).focalLength, 50, 0.5L);
+    fmt::print("double Gauss: focal length {:.4f} mm, f/{:.4f}, film at {:.4f} mm, {:.5f} focal lengths\n",
+               paraxial(gauss).focalLength, paraxial(gauss).fNumber, paraxial(gauss).filmDistance,
+               paraxial(gauss).filmDistance / paraxial(gauss).focalLength);
+    // As patented; radii are printed to four digits.
+    EXPECT_NEAR(paraxial(gauss).focalLength, 50, 0.02L);
+    EXPECT_NEAR(paraxial(gauss).filmDistance / paraxial(gauss).focalLength, 0.71436L, 1e-4L);
     EXPECT_NEAR(paraxial(gauss).fNumber, 2, 0.1L);
     // Rays along the axis bend by height over focal length.
     for (const LensTable& lens : {thick, ball, gauss}) {

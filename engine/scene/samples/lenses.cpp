@@ -14,15 +14,17 @@ namespace {
 /** Distance of the ball in the middle from the cameras. */
 constexpr float focus = 2.5f;
 
-/** Double Gauss, 50 mm at f/2, after US patent 2,673,491 (Tronnier) as Smith's "Modern Lens Design"
- * prescribes it. */
+/** Double Gauss of US patent 2,673,491 (Tronnier), scaled to 50 mm: radii, distances and indices are the
+ * patent's; it claims 1 : 2 and a back focus of 0.71436 focal lengths. Diameters, which it does not print,
+ * are those of Smith's "Modern Lens Design", p. 312. */
 LensTable doubleGauss() {
     LensTable lens;
-    lens.surfaces = {
-        {29.475f, 3.76f, 1.67f, 25.2f},   {84.83f, 0.12f, 1.0f, 25.2f},    {19.275f, 4.025f, 1.67f, 23.0f},
-        {40.77f, 3.275f, 1.699f, 23.0f},  {12.75f, 5.705f, 1.0f, 18.0f},   {0.0f, 4.5f, 1.0f, 17.1f},
-        {-14.495f, 1.18f, 1.603f, 17.0f}, {40.77f, 6.065f, 1.658f, 20.0f}, {-20.385f, 0.19f, 1.0f, 20.0f},
-        {437.065f, 3.22f, 1.717f, 20.0f}, {-39.73f, 0.0f, 1.0f, 20.0f}};
+    lens.surfaces = {{29.475f, 3.76f, 1.67125f, 25.2f},  {84.83f, 0.12f, 1.0f, 25.2f},
+                     {19.275f, 4.025f, 1.67125f, 23.0f}, {40.77f, 3.275f, 1.69842f, 23.0f},
+                     {12.75f, 5.466f, 1.0f, 18.0f},      {0.0f, 4.741f, 1.0f, 17.1f},
+                     {-14.495f, 1.18f, 1.60266f, 17.0f}, {40.77f, 6.065f, 1.65953f, 20.0f},
+                     {-20.385f, 0.19f, 1.0f, 20.0f},     {437.065f, 3.22f, 1.7174f, 20.0f},
+                     {-39.73f, 0.0f, 1.0f, 20.0f}};
     lens.focusDistance = focus;
     return lens;
 }
