@@ -43,6 +43,10 @@ vec2 chooseLobe(uint kind, PixelSampler numbers, uint dimension) {
 vec3 leaving(SurfacePoint s, vec3 direction) {
     return s.position + s.face * s.offset;
 }
+/** The normal of the side whose lights are asked. */
+vec3 lightSide(SurfaceBsdf bsdf, SurfacePoint s) {
+    return s.face;
+}
 /** What the surface makes of a ray along `direction`; may pick a wavelength, which changes the throughput. */
 SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3 throughput) {
     return SurfaceBsdf(baseColor(s.triangle.material, s.triangle.g, s.b).rgb);

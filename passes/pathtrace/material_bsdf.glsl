@@ -96,6 +96,19 @@ vec3 leaving(SurfacePoint s, vec3 direction) {
     return s.position + s.face * (through ? -s.offset : s.offset);
 }
 
+/** The normal of the side whose lights are asked, 0 for both: light by power then. Through a volume's surface comes what
+ * is outside, to who is inside too; for who is outside its inside is hidden by the volume itself. */
+vec3 lightSide(SurfaceBsdf bsdf, SurfacePoint s) {
+    bool through = false, thin = false;
+    if (HAS_GLTF && HAS_TRANSMISSION && bsdf.model == 0u) {
+        through = bsdf.gltf.transmission > 0.0;
+        thin = bsdf.gltf.thin;
+    }
+    if (HAS_MODEL(MODEL_DIELECTRIC) && bsdf.model == MODEL_DIELECTRIC + 1u) through = true;
+    const vec3 outside = through && !s.front ? -s.face : s.face;
+    return through && thin ? vec3(0.0) : outside;
+}
+
 SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3 throughput) {
     const int material = s.triangle.material, g = s.triangle.g;
     const vec3 wo = -direction;

@@ -116,7 +116,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     LightSample light;
     light.direction = s.face;
     if (LIGHT_COUNT > 0) {
-        path.lightPlace = lightPlace(s.position, s.face);
+        path.lightPlace = lightPlace(s.position, lightSide(bsdf, s));
         light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
     }
     const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, next);

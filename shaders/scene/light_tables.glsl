@@ -20,9 +20,9 @@ layout(constant_id = 156) const float LIGHT_ORIGIN_Y = 0.0;
 layout(constant_id = 157) const float LIGHT_ORIGIN_Z = 0.0;
 layout(constant_id = 158) const float LIGHT_GRID_SCALE = 0.0;
 
-/** First slot of the table for a surface at p that faces n. */
+/** First slot of the table for a surface at p that faces n; of table 0 where n is 0. */
 int lightPlace(vec3 p, vec3 n) {
-    if (LIGHT_GRID_X == 0) return 0;
+    if (LIGHT_GRID_X == 0 || n == vec3(0.0)) return 0;
     const vec3 q = (p - vec3(LIGHT_ORIGIN_X, LIGHT_ORIGIN_Y, LIGHT_ORIGIN_Z)) * LIGHT_GRID_SCALE;
     const ivec3 c = ivec3(clamp(q, vec3(0.0), vec3(LIGHT_GRID_X - 1, LIGHT_GRID_Y - 1, LIGHT_GRID_Z - 1)));
     const vec3 m = abs(n);

@@ -105,6 +105,47 @@ TEST(PathLights, RaysThatMeetLightsAgree) {
                "met by chance");
 }
 
+/** A frosted pane or ball with bright lamps on the viewer's side, as many dim ones behind it, which it shows.
+ */
+Scene frosted(bool ball) {
+    SceneBuilder b;
+    const int glass = b.material(glm::vec3(1.0f));
+    Material& material = b.scene.materials[std::size_t(glass)];
+    material.transmission = 1;
+    material.roughness = 0.6f;
+    material.thickness = ball ? 1.0f : 0.0f;
+    material.specular = 1;
+    if (ball)
+        b.sphere({0, 0, 0}, 0.9f, 3, false, glass);
+    else
+        b.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, glass);
+    const int bright = b.material(glm::vec3(0.0f), glm::vec3(40.0f), true);
+    const int dim = b.material(glm::vec3(0.0f), glm::vec3(10.0f), true);
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 6; ++k)
+            for (const float z : {-1.6f, 1.6f}) {
+                const glm::vec3 at(0.6f * (float(i) - 2.5f), 0.6f * (float(k) - 2.5f), z);
+                b.quad(at, at + glm::vec3(0.03f, 0, 0), at + glm::vec3(0.03f, 0.03f, 0),
+                       at + glm::vec3(0, 0.03f, 0), z < 0 ? dim : bright);
+            }
+    b.camera({0, 0, 1.5f}, {0, 0, 0}, 0.8f);
+    return b.scene;
+}
+
+TEST(PathLights, LampsBehindFrostedGlassAreAsked) {
+    for (const bool ball : {false, true}) {
+        const Scene scene = frosted(ball);
+        const Traced adaptive = trace(scene, options(LightChoice::Adaptive), 256),
+                     power = trace(scene, options(LightChoice::Power), 1024);
+        expectSame(adaptive, power, ball ? "ball" : "pane");
+        const auto all = [](std::size_t) { return true; };
+        // Of as many samples.
+        const double gain = std::pow(estimate(power, 0, all).error / estimate(adaptive, 0, all).error, 2) * 4;
+        fmt::print("{}: {:.2f} times the efficiency of a choice by power\n", ball ? "ball" : "pane", gain);
+        EXPECT_GT(gain, ball ? 4 : 0.6);
+    }
+}
+
 TEST(PathLights, CutsDoNotChangeThePicture) {
     const Scene scene = manyLights(1500, true);
     ASSERT_TRUE(packScene(scene, {.lights = LightChoice::Adaptive}).lightCuts);
