@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace helio {
 namespace {
@@ -24,40 +25,54 @@ void checkReference(const Scene& scene, int node, const char* what, int index, s
 }
 
 /** Visits the nodes under the roots depth first, parents before children, with their world transforms. The
- * stack is explicit: a chain of a million nodes must not overflow the program's own. */
+ * stack is explicit, with an entry per level: neither a chain nor a list of a million nodes must fill it. */
 template <class Visit>
 void visitNodes(const Scene& scene, Visit&& visit) {
-    struct Entry {
-        int node;
+    struct Level {
+        std::span<const int> left;
         int parent;
         glm::dmat4 parentToWorld;
     };
-    std::vector<Entry> stack;
+    std::vector<Level> levels{{scene.roots, -1, glm::dmat4(1.0)}};
     std::vector<bool> seen(scene.nodes.size(), false);
-    for (auto root = scene.roots.rbegin(); root != scene.roots.rend(); ++root) {
-        stack.push_back({*root, -1, glm::dmat4(1.0)});
-    }
-    while (!stack.empty()) {
-        const Entry entry = stack.back();
-        stack.pop_back();
-        if (!inRange(entry.node, scene.nodes.size())) {
-            throw InputError(scene.name, entry.parent < 0 ? "roots" : fmt::format("node {}", entry.parent),
-                             fmt::format("node {} does not exist", entry.node),
+    while (!levels.empty()) {
+        Level& level = levels.back();
+        if (level.left.empty()) {
+            levels.pop_back();
+            continue;
+        }
+        const int index = level.left.front();
+        level.left = level.left.subspan(1);
+        if (!inRange(index, scene.nodes.size())) {
+            throw InputError(scene.name, level.parent < 0 ? "roots" : fmt::format("node {}", level.parent),
+                             fmt::format("node {} does not exist", index),
                              fmt::format("the scene has {} nodes", scene.nodes.size()));
         }
-        const Node& node = scene.nodes[std::size_t(entry.node)];
-        if (seen[std::size_t(entry.node)]) {
-            throw InputError(scene.name, fmt::format("node {}", entry.node),
+        const Node& node = scene.nodes[std::size_t(index)];
+        if (seen[std::size_t(index)]) {
+            throw InputError(scene.name, fmt::format("node {}", index),
                              "is reached twice: the hierarchy has a cycle or a node with two parents",
                              "nodes must form trees; place a mesh again with another node");
         }
-        seen[std::size_t(entry.node)] = true;
-        const glm::dmat4 toWorld = entry.parentToWorld * node.localTransform();
-        visit(entry.node, node, toWorld);
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-            stack.push_back({*child, entry.node, toWorld});
-        }
+        seen[std::size_t(index)] = true;
+        const glm::dmat4 toWorld = level.parentToWorld * node.localTransform();
+        visit(index, node, toWorld);
+        if (!node.children.empty()) levels.push_back({node.children, index, toWorld});
     }
+}
+
+/** Calls visit(Instance) for each. */
+template <class Visit>
+void visitInstances(const Scene& scene, Visit&& visit) {
+    visitNodes(scene, [&](int index, const Node& node, const glm::dmat4& toWorld) {
+        checkReference(scene, index, "mesh", node.mesh, scene.meshes.size());
+        if (node.mesh < 0) return;
+        const glm::dmat4 transform =
+            node.meshOrigin ? glm::translate(glm::dmat4(1.0), *node.meshOrigin) : toWorld;
+        if (node.copies.empty()) visit(Instance{index, node.mesh, transform});
+        for (const Placement& copy : node.copies)
+            visit(Instance{index, node.mesh, transform * copy.matrix()});
+    });
 }
 
 bool isFinite(const glm::dvec3& v) {
@@ -109,17 +124,11 @@ glm::dmat4 Node::localTransform() const {
 }
 
 std::vector<Instance> Scene::instances() const {
+    std::size_t most = 0;
+    for (const Node& node : nodes) most += node.mesh < 0 ? 0 : std::max<std::size_t>(node.copies.size(), 1);
     std::vector<Instance> placed;
-    visitNodes(*this, [&](int index, const Node& node, const glm::dmat4& toWorld) {
-        checkReference(*this, index, "mesh", node.mesh, meshes.size());
-        if (node.mesh < 0) return;
-        const glm::dmat4 transform =
-            node.meshOrigin ? glm::translate(glm::dmat4(1.0), *node.meshOrigin) : toWorld;
-        if (node.copies.empty()) placed.push_back({index, node.mesh, transform});
-        for (const Placement& copy : node.copies) {
-            placed.push_back({index, node.mesh, transform * copy.matrix()});
-        }
-    });
+    placed.reserve(most);
+    visitInstances(*this, [&](const Instance& instance) { placed.push_back(instance); });
     return placed;
 }
 
@@ -154,7 +163,7 @@ Scene::Bounds Scene::bounds() const {
     std::vector<Bounds> boxes;
     for (const Mesh& mesh : meshes) boxes.push_back(objectBounds(mesh));
     Bounds bounds;
-    for (const Instance& instance : instances()) {
+    visitInstances(*this, [&](const Instance& instance) {
         const Bounds& box = boxes[std::size_t(instance.mesh)];
         for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
             if (!primitive.shape) continue;
@@ -162,33 +171,32 @@ Scene::Bounds Scene::bounds() const {
             extend(bounds, shape.lower);
             extend(bounds, shape.upper);
         }
-        if (box.empty() || boxIsInside(box, instance.transform, bounds)) continue;
+        if (box.empty() || boxIsInside(box, instance.transform, bounds)) return;
         for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
             for (std::uint32_t index : primitive.indices) {
                 const glm::dvec3 point(instance.transform * glm::dvec4(primitive.positions[index], 1.0));
                 if (isFinite(point)) extend(bounds, point);
             }
         }
-    }
+    });
     return bounds;
 }
 
 std::uint64_t Scene::triangleCount() const {
     std::uint64_t count = 0;
-    for (const Instance& instance : instances()) {
-        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives) {
+    visitInstances(*this, [&](const Instance& instance) {
+        for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives)
             count += primitive.indices.size() / 3;
-        }
-    }
+    });
     return count;
 }
 
 std::uint64_t Scene::shapeCount() const {
     std::uint64_t count = 0;
-    for (const Instance& instance : instances()) {
+    visitInstances(*this, [&](const Instance& instance) {
         for (const Primitive& primitive : meshes[std::size_t(instance.mesh)].primitives)
             count += primitive.shape ? 1 : 0;
-    }
+    });
     return count;
 }
 

@@ -210,13 +210,14 @@ Primitive shapeOf(const std::string& file, const std::string& place, const json&
 
 }  // namespace
 
-void check(const std::string& file, const json& document) {
-    for (const auto& [list, kind] : kinds) {
-        const auto found = document.find(list);
-        if (found == document.end()) continue;
-        for (std::size_t i = 0; i < found->size(); ++i)
-            checkObject(file, fmt::format("/{}/{}", list, i), kind, (*found)[i]);
+void check(const std::string& file, std::string_view list, std::size_t index, const json& object) {
+    if (extrasOf(object) == nullptr) return;
+    for (const auto& [name, kind] : kinds) {
+        if (name == list) checkObject(file, fmt::format("/{}/{}", list, index), kind, object);
     }
+}
+
+void checkDocument(const std::string& file, const json& document) {
     checkObject(file, "", "asset", document);
 }
 

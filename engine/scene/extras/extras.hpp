@@ -10,12 +10,15 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace helio::extras {
 
-/** Checks every extras.heliograph of a glTF document against the schema. Throws InputError with the JSON
- * pointer, the fault, and what the schema asks for. Objects are those of the lists that glTF 2.0 names. */
-void check(const std::string& file, const nlohmann::json& document);
+/** Checks extras.heliograph of an object, `index` of the glTF document's list of that name, against the
+ * schema. Throws InputError with the JSON pointer, the fault, and what the schema asks for. */
+void check(const std::string& file, std::string_view list, std::size_t index, const nlohmann::json& object);
+/** The same for the document's own. */
+void checkDocument(const std::string& file, const nlohmann::json& document);
 
 /** Reads what check() has accepted. `object` is a material, camera, node or scene of the document, `pointer`
  * leads to it. An environment's image is appended to Scene::images. */

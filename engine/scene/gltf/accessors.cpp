@@ -70,28 +70,22 @@ Asset::Asset(Container container)
     : container_(std::move(container)),
       views_(bufferViewsOf(container_.document)),
       accessors_(accessorsOf(container_.document)) {
-    bytes_ = container_.size;
-    const auto found = container_.document.find("buffers");
-    if (found == container_.document.end()) return;
+    bytes_ = container_.bytes.size();
     std::map<std::string, std::span<const std::byte>> loaded;  // buffers of one URI are one
-    for (std::size_t i = 0; i < found->size(); ++i) {
-        json& buffer = (*found)[i];
+    for (std::size_t i = 0; i < document().size("buffers"); ++i) {
+        const json buffer = document().element("buffers", i);
         const auto length = buffer["byteLength"].get<std::size_t>();
         const std::string place = fmt::format("buffers[{}]", i);
         std::span<const std::byte> bytes;
         if (buffer.contains("uri")) {
-            std::string& uri = buffer["uri"].get_ref<std::string&>();
+            const auto& uri = buffer["uri"].get_ref<const std::string&>();
             const auto known = loaded.find(uri);
             if (known != loaded.end()) {
                 bytes = known->second;
             } else {
                 bytes = owned_.emplace_back(readUri(file(), place + ".uri", this->uri(uri)));
                 bytes_ += bytes.size();
-                if (uri.starts_with("data:")) {
-                    uri = std::string();  // a third more than its bytes, which are there now
-                } else {
-                    loaded.emplace(uri, bytes);
-                }
+                if (!uri.starts_with("data:")) loaded.emplace(uri, bytes);
             }
         } else if (i == 0 && container_.hasBinaryChunk) {
             bytes = container_.binaryChunk;

@@ -21,7 +21,7 @@ public:
     Asset& operator=(const Asset&) = delete;
 
     const std::string& file() const { return container_.file; }
-    const nlohmann::json& document() const { return container_.document; }
+    const Document& document() const { return container_.document; }
     const Accessor& accessor(int index) const { return accessors_[std::size_t(index)]; }
 
     /** The bytes of a buffer view; checked against its buffer. */
@@ -44,17 +44,13 @@ public:
     std::vector<std::string> misaligned() const;
     /** Bytes of the file and of its buffers: what it may unfold to is in proportion. */
     std::size_t bytes() const { return bytes_; }
-    /** Bytes that the document takes in memory. */
-    std::size_t documentBytes() const { return container_.documentBytes; }
-    /** Bytes of the JSON text. */
-    std::size_t textBytes() const { return container_.textBytes; }
     /** Bytes that the asset's own lists take. */
     std::size_t listBytes() const {
         return views_.size() * sizeof(BufferView) + accessors_.size() * sizeof(Accessor);
     }
     /** A URI of the document, as it is in the text. */
     std::string_view uri(const std::string& value) const {
-        return container_.longString(value).value_or(value);
+        return container_.document.longString(value).value_or(value);
     }
     /** Bytes of the buffers that an accessor reads; 0 for one without data. */
     std::size_t dataBytes(int accessor) const;

@@ -130,13 +130,14 @@ private:
 }  // namespace
 
 void buildAnimations(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
-    const auto found = asset.document().find("animations");
-    if (found == asset.document().end()) return;
-    memory.take("animations", found->size() * sizeof(Animation), 0);
-    scene.animations.reserve(found->size());
+    const std::size_t count = asset.document().size("animations");
+    memory.take("animations", count * sizeof(Animation), 0);
+    scene.animations.reserve(count);
     AnimationBuilder builder(asset, memory, scene);
-    for (std::size_t i = 0; i < found->size(); ++i)
-        scene.animations.push_back(builder.build((*found)[i], fmt::format("animations[{}]", i)));
+    for (std::size_t i = 0; i < count; ++i) {
+        const json from = asset.document().element("animations", i);
+        scene.animations.push_back(builder.build(from, fmt::format("animations[{}]", i)));
+    }
 }
 
 }  // namespace helio::gltf

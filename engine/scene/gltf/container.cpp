@@ -1,13 +1,11 @@
 #include "engine/scene/gltf/container.hpp"
 
 #include "engine/image/read_file.hpp"
-#include "engine/scene/gltf/json_reader.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <string_view>
 
@@ -22,12 +20,7 @@ std::uint32_t littleEndian32(std::span<const std::byte> bytes, std::size_t at) {
 
 void parseInto(Container& container, std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    Json read = readJson(container.file, text);
-    container.document = std::move(read.document);
-    container.documentBytes = read.bytes;
-    container.textBytes = text.size();
-    for (const LongString& one : read.longStrings)
-        container.longStrings.push_back(text.substr(one.begin, one.end - one.begin));
+    container.document = Document(container.file, text);
 }
 
 /** A GLB's header is magic, version, length; then chunks of length, type, data: JSON first, BIN second. */
@@ -76,7 +69,6 @@ Container readContainer(const std::string& file) {
     Container container;
     container.file = file;
     container.bytes = readFile(file);
-    container.size = container.bytes.size();
     if (container.bytes.empty())
         throw InputError(file, "", "is empty", "give a .gltf or .glb file, or write this one again");
     const std::string_view text(reinterpret_cast<const char*>(container.bytes.data()),
@@ -85,18 +77,8 @@ Container readContainer(const std::string& file) {
         parseBinary(container);
     } else {
         parseInto(container, container.bytes);
-        if (container.longStrings.empty()) container.bytes = {};
     }
     return container;
-}
-
-std::optional<std::string_view> Container::longString(const std::string& value) const {
-    std::size_t index = 0;
-    if (value.empty() || value[0] != longStringMark) return std::nullopt;
-    const char* const end = value.data() + value.size();
-    const auto [at, error] = std::from_chars(value.data() + 1, end, index);
-    if (at != end || error != std::errc() || index >= longStrings.size()) return std::nullopt;
-    return longStrings[index];
 }
 
 }  // namespace helio::gltf

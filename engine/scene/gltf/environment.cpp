@@ -57,10 +57,10 @@ void buildImageBased(const Asset& asset, const json& light, const std::string& p
 }  // namespace
 
 void buildEnvironment(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
-    const json& document = asset.document();
-    if (!document.contains("scenes") || document["scenes"].empty()) return;
+    const json& document = asset.document().root();
+    if (asset.document().size("scenes") == 0) return;
     const auto shown = std::size_t(document.value("scene", 0.0));
-    const json& from = document["scenes"][shown];
+    const json from = asset.document().element("scenes", shown);
     const json::json_pointer path("/extensions/EXT_lights_image_based/light");
     if (from.contains(path)) {
         const auto light = std::size_t(from[path].get<double>());

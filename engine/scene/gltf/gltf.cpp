@@ -43,14 +43,14 @@ bool isSupported(const std::string& extension) {
 namespace {
 
 void checkExtensions(const Container& container, helio::Scene& scene) {
-    for (const auto& extension : listOf(container.document, "extensionsRequired")) {
+    for (const auto& extension : listOf(container.document.root(), "extensionsRequired")) {
         const auto& name = extension.get_ref<const std::string&>();
         if (!isSupported(name)) {
             throw InputError(container.file, "extensionsRequired", name + " is not supported",
                              "export the file without " + name);
         }
     }
-    for (const auto& extension : listOf(container.document, "extensionsUsed")) {
+    for (const auto& extension : listOf(container.document.root(), "extensionsUsed")) {
         const auto& name = extension.get_ref<const std::string&>();
         if (!isSupported(name)) skip(scene, name, "is not supported");
     }
@@ -76,14 +76,13 @@ Scene loadGltf(const std::string& file, const LoadOptions& options, LoadMonitor&
     Scene scene;
     scene.name = file;
     gltf::Container container = gltf::readContainer(file);
-    gltf::checkSchema(file, container.document);
+    const std::size_t largest = gltf::checkSchema(file, container.document);
     gltf::checkExtensions(container, scene);
-    extras::check(file, container.document);
     monitor.report("buffers", 0);
     const gltf::Asset asset(std::move(container));
     for (const std::string& place : asset.misaligned())
         warn(scene, place + " is not aligned to its components, as glTF asks for");
-    gltf::MemoryBudget memory(asset);
+    gltf::MemoryBudget memory(asset, largest);
     gltf::buildMeshes(asset, memory, monitor, scene);
     gltf::buildNodes(asset, memory, scene);
     gltf::buildSkins(asset, memory, scene);

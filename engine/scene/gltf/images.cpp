@@ -11,12 +11,11 @@
 namespace helio::gltf {
 
 int ImageLoader::use(int image) {
-    const nlohmann::json& images = asset_.document()["images"];
-    known_.resize(images.size(), -1);
+    known_.resize(asset_.document().size("images"), -1);
     int& known = known_[std::size_t(image)];
     if (known >= 0) return known;
 
-    const nlohmann::json& json = images[std::size_t(image)];
+    const nlohmann::json json = asset_.document().element("images", std::size_t(image));
     const std::string place = fmt::format("images[{}]", image);
     EncodedImage source;
     source.place = place;
@@ -54,7 +53,7 @@ std::string_view mimeTypeOf(std::span<const std::byte> bytes) {
 void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
     for (std::size_t i = 0; i < known_.size(); ++i) {
         if (known_[i] < 0) continue;
-        const nlohmann::json& json = asset_.document()["images"][i];
+        const nlohmann::json json = asset_.document().element("images", i);
         const std::string said = json.value("mimeType", "");
         const std::string_view type = mimeTypeOf(sources_[std::size_t(known_[i])].bytes);
         if (!said.empty() && !type.empty() && said != type)

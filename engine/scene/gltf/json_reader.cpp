@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <iterator>
 #include <span>
 #include <vector>
@@ -26,7 +27,6 @@ constexpr std::size_t longest = std::size_t(1) << 16;
 std::vector<LongString> scan(const std::string& file, std::string_view text) {
     std::vector<LongString> longStrings;
     int depth = 0;
-    std::size_t strings = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (c == '"') {
@@ -35,8 +35,7 @@ std::vector<LongString> scan(const std::string& file, std::string_view text) {
                 if (text[i] == '\\') ++i;
             }
             if (i >= text.size()) break;  // an open string, which the parser refuses
-            if (i - begin > longest) longStrings.push_back({strings, begin, i});
-            ++strings;
+            if (i - begin > longest) longStrings.push_back({begin, i});
         } else if (c == '{' || c == '[') {
             if (++depth > maximumNesting) {
                 throw InputError(file, fmt::format("byte {}", i), "its JSON is nested too deeply",
@@ -102,24 +101,38 @@ std::string reasonOf(const json::exception& error) {
 }
 
 bool isDocumentMember(std::string_view name) {
-    constexpr std::array members = std::to_array<std::string_view>(
-        {"accessors", "animations", "asset", "bufferViews", "buffers", "cameras", "extensions",
-         "extensionsRequired", "extensionsUsed", "extras", "images", "materials", "meshes", "nodes",
-         "samplers", "scene", "scenes", "skins", "textures"});
-    return std::find(members.begin(), members.end(), name) != members.end();
+    constexpr std::array others = std::to_array<std::string_view>(
+        {"asset", "extensions", "extensionsRequired", "extensionsUsed", "extras", "scene"});
+    return Document::isList(name) || std::find(others.begin(), others.end(), name) != others.end();
 }
 
-/** Takes the parser's events; keeps what is read later. */
-class DocumentBuilder {
-public:
-    DocumentBuilder(const std::string& file, std::string_view text)
-        : file_(file), text_(text), most_(maximumDocument(text.size())), longStrings_(scan(file, text)) {}
+/** The value of a long string that is a member `uri` is this and its number; of others it is empty. */
+constexpr char longStringMark = '\x01';
 
-    Json parse() {
-        json::sax_parse(TextIterator(text_, longStrings_, 0, &place_),
-                        TextIterator(text_, {}, text_.size(), nullptr), this);
-        return {std::move(root_), bytes_, std::move(longStrings_)};
+}  // namespace
+
+/** Takes the JSON parser's events; keeps what is read later. */
+class Document::Parser {
+public:
+    /** Of the whole document, into it. */
+    explicit Parser(Document& document) : Parser(document, &document, 0, "document") {}
+    /** Of an object of one of its lists. */
+    Parser(const Document& document, std::size_t begin, std::string place)
+        : Parser(document, nullptr, begin, std::move(place)) {}
+
+    json parse() {
+        const std::size_t first = std::size_t(
+            std::lower_bound(long_.begin(), long_.end(), begin_,
+                             [](const LongString& one, std::size_t at) { return one.begin < at; }) -
+            long_.begin());
+        nextLong_ = first;
+        const TextIterator from(text_, std::span(long_).subspan(first), begin_, &place_);
+        const bool isStrict = filled_ != nullptr;  // an object ends before the text does
+        json::sax_parse(from, TextIterator(text_, {}, text_.size(), nullptr), this,
+                        json::input_format_t::json, isStrict);
+        return std::move(root_);
     }
+    std::size_t bytes() const { return bytes_; }
 
     bool null() { return add(nullptr); }
     bool boolean(bool value) { return add(value); }
@@ -128,7 +141,7 @@ public:
     bool number_float(json::number_float_t value, const std::string&) { return add(value); }
     bool binary(json::binary_t&) { return add(nullptr); }
     bool string(std::string& value) {
-        if (isLong() && key_ == "uri") value = longStringMark + std::to_string(longStringsMet_ - 1);
+        if (isLong() && key_ == "uri") value = longStringMark + std::to_string(nextLong_ - 1);
         if (!isLeftOut()) charge(stringBytes(value));
         return add(std::move(value));
     }
@@ -145,6 +158,7 @@ public:
         if (part == Part::Document) {
             member_ = key_;
             isNextLeftOut_ = !isDocumentMember(key_);
+            filled_->lists_.erase(key_);  // of a member that is there twice the last counts
         } else if (part == Part::Extras) {
             isNextLeftOut_ = key_ != "heliograph";
         } else if (part == Part::Extensions && !isSupported(key_)) {
@@ -154,8 +168,8 @@ public:
         return true;
     }
     bool parse_error(std::size_t byte, const std::string&, const json::exception& error) {
-        for (std::size_t i = 0; i < longStrings_.size() && byte > longStrings_[i].begin; ++i)
-            byte += longStrings_[i].end - longStrings_[i].begin;  // which the parser has not seen
+        for (std::size_t i = 0; i < long_.size() && byte > long_[i].begin; ++i)
+            byte += long_[i].end - long_[i].begin;  // which the parser has not seen
         const auto end = text_.begin() + std::ptrdiff_t(std::min(byte, text_.size()));
         const auto lines = std::count(text_.begin(), end, '\n');
         const std::string place = fmt::format("line {}, byte {}", lines + 1, byte);
@@ -168,11 +182,20 @@ public:
     }
 
 private:
-    enum class Part { Document, Extras, Extensions, Other };
+    enum class Part { Document, List, Extras, Extensions, Other };
     struct Open {
         json* value;
         Part part;
     };
+
+    Parser(const Document& document, Document* filled, std::size_t begin, std::string member)
+        : file_(document.file_),
+          text_(document.text_),
+          long_(document.longStrings_),
+          most_(maximumDocument(text_.size())),
+          filled_(filled),
+          begin_(begin),
+          member_(std::move(member)) {}
 
     // Bytes in 64-bit libstdc++ with glibc's allocator, which rounds n to a multiple of 16 above n + 8.
     static constexpr std::size_t objectBytes = 64, arrayBytes = 32, memberBytes = 96;
@@ -181,23 +204,29 @@ private:
 
     void charge(std::size_t bytes, std::size_t transient = 0) {
         bytes_ += bytes;
-        if (bytes_ + transient <= most_ || bytes_ <= documentProportion * place_) return;
-        throw InputError(file_, member_.empty() ? "document" : member_,
+        if (bytes_ + transient <= most_ || bytes_ <= documentProportion * (place_ - begin_)) return;
+        throw InputError(file_, member_,
                          fmt::format("unfolds the JSON to more than {} MiB, for a file of {} bytes",
                                      most_ >> 20, text_.size()),
                          "leave out elements that say nothing");
     }
 
-    /** Whether the string that comes next in the text is a long one, whose content was not read. */
+    /** Whether the string that the parser has just passed is a long one, whose content was not read. */
     bool isLong() {
-        const bool isLong =
-            longStringsMet_ < longStrings_.size() && longStrings_[longStringsMet_].ordinal == stringsMet_;
-        longStringsMet_ += isLong ? 1 : 0;
-        ++stringsMet_;
+        const bool isLong = nextLong_ < long_.size() && long_[nextLong_].end + 1 == place_;
+        nextLong_ += isLong ? 1 : 0;
         return isLong;
     }
 
     bool isLeftOut() const { return leftOut_ > 0 || isNextLeftOut_; }
+    bool isInList() const { return leftOut_ == 0 && !open_.empty() && open_.back().part == Part::List; }
+
+    /** Room in an array for one more, which doubles: old and new are there for a while. */
+    template <class Elements>
+    void chargeElement(const Elements& elements) {
+        const std::size_t before = elements.capacity(), size = sizeof(typename Elements::value_type);
+        if (elements.size() == before) charge(std::max<std::size_t>(before, 1) * size, before * size);
+    }
 
     /** Into the array or object that is open. */
     json* put(json value) {
@@ -208,11 +237,7 @@ private:
         json& parent = *open_.back().value;
         if (parent.is_array()) {
             auto& elements = parent.get_ref<json::array_t&>();
-            const std::size_t before = elements.capacity();
-            if (elements.size() == before) {  // doubles: old and new are there for a while
-                const std::size_t grown = before == 0 ? 1 : before;
-                charge(grown * sizeof(json), before * sizeof(json));
-            }
+            chargeElement(elements);
             return &elements.emplace_back(std::move(value));
         }
         auto& members = parent.get_ref<json::object_t&>();
@@ -223,6 +248,7 @@ private:
     }
 
     bool add(json value) {
+        if (isInList()) refuseInList();
         const bool isWholeExtras = !open_.empty() && open_.back().value->is_object() && key_ == "extras";
         if (!isLeftOut() && !isWholeExtras) put(std::move(value));
         isNextLeftOut_ = false;
@@ -230,6 +256,13 @@ private:
     }
 
     bool start(json container, std::size_t bytes) {
+        if (isInList()) {
+            if (!container.is_object()) refuseInList();
+            chargeElement(*list_);
+            list_->push_back(place_ - 1);
+            ++leftOut_;
+            return true;
+        }
         const bool isMember = !open_.empty() && open_.back().value->is_object();
         const bool isArrayOfExtras = isMember && key_ == "extras" && container.is_array();
         if (isLeftOut() || isArrayOfExtras) {
@@ -238,13 +271,19 @@ private:
             return true;
         }
         charge(bytes);
-        const Part part = open_.empty()                      ? Part::Document
-                          : isMember && key_ == "extras"     ? Part::Extras
-                          : isMember && key_ == "extensions" ? Part::Extensions
-                                                             : Part::Other;
+        const Part part = partOf(container, isMember);
+        if (part == Part::List) list_ = &filled_->lists_[key_];
         json* const value = put(std::move(container));
         open_.push_back({value, part});
         return true;
+    }
+
+    Part partOf(const json& container, bool isMember) const {
+        if (open_.empty()) return filled_ != nullptr ? Part::Document : Part::Other;
+        if (open_.back().part == Part::Document && container.is_array() && isList(key_)) return Part::List;
+        if (!isMember) return Part::Other;
+        if (key_ == "extras") return Part::Extras;
+        return key_ == "extensions" ? Part::Extensions : Part::Other;
     }
 
     bool end() {
@@ -256,30 +295,67 @@ private:
         return true;
     }
 
+    [[noreturn]] void refuseInList() const {
+        throw InputError(file_, fmt::format("{}[{}]", member_, list_->size()), "is no object",
+                         "give an object");
+    }
+
     const std::string& file_;
     std::string_view text_;
+    const std::vector<LongString>& long_;
     std::size_t most_, bytes_ = 0;
-    std::vector<LongString> longStrings_;
-    std::size_t place_ = 0;  ///< of the parser in the text
-    std::size_t stringsMet_ = 0, longStringsMet_ = 0;
+    Document* filled_;               ///< nullptr for an object of a list
+    std::size_t begin_, place_ = 0;  ///< of the parser in the text
+    std::size_t nextLong_ = 0;
+    std::vector<std::size_t>* list_ = nullptr;  ///< that is open
     json root_;
     std::vector<Open> open_;
-    std::string key_, member_;  ///< of the innermost object; of the document
-    std::size_t leftOut_ = 0;   ///< open arrays and objects of what is left out
+    std::string key_;          ///< of the innermost object
+    std::string member_;       ///< of the document, or where the object is in it
+    std::size_t leftOut_ = 0;  ///< open arrays and objects of what is left out, or stays text
     bool isNextLeftOut_ = false;
 };
 
-}  // namespace
-
-Json readJson(const std::string& file, std::string_view text) {
+Document::Document(const std::string& file, std::string_view text) : file_(file) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         throw InputError(file, "byte 0", "is text in UTF-16", "save it as UTF-8");
     const std::size_t end = text.find('\0');  // the parser takes it for the end
     if (text.find_first_not_of('\0', end) != text.npos && end != text.npos)
         throw InputError(file, fmt::format("byte {}", end), "has a NUL within its JSON",
                          "write the file again");
-    text = text.substr(0, end);
-    return DocumentBuilder(file, text).parse();
+    text_ = text.substr(0, end);
+    longStrings_ = scan(file, text_);
+    Parser parser(*this);
+    root_ = parser.parse();
+    bytes_ = parser.bytes();
+}
+
+bool Document::isList(std::string_view name) {
+    constexpr std::array lists = std::to_array<std::string_view>(
+        {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials", "meshes",
+         "nodes", "samplers", "scenes", "skins", "textures"});
+    return std::find(lists.begin(), lists.end(), name) != lists.end();
+}
+
+std::size_t Document::size(std::string_view list) const {
+    const auto found = lists_.find(list);
+    return found == lists_.end() ? 0 : found->second.size();
+}
+
+json Document::element(std::string_view list, std::size_t index, std::size_t* bytes) const {
+    Parser parser(*this, lists_.find(list)->second[index], fmt::format("{}[{}]", list, index));
+    json element = parser.parse();
+    if (bytes != nullptr) *bytes += parser.bytes();
+    return element;
+}
+
+std::optional<std::string_view> Document::longString(const std::string& value) const {
+    std::size_t index = 0;
+    if (value.empty() || value[0] != longStringMark) return std::nullopt;
+    const char* const end = value.data() + value.size();
+    const auto [at, error] = std::from_chars(value.data() + 1, end, index);
+    if (at != end || error != std::errc() || index >= longStrings_.size()) return std::nullopt;
+    return text_.substr(longStrings_[index].begin, longStrings_[index].end - longStrings_[index].begin);
 }
 
 }  // namespace helio::gltf

@@ -3,6 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,24 +27,45 @@ inline constexpr std::size_t documentProportion = 12, sceneProportion = 24;
 
 /** A string too long for the parser's buffers, where it lies in the text, escapes and all. */
 struct LongString {
-    std::size_t ordinal;  ///< among the strings of the text, keys included
     std::size_t begin, end;
 };
 
-/** A document, and about how many bytes it takes. The value of a long string that is a member `uri` is one of
- * longStringMark and its number; of others it is empty. */
-struct Json {
-    nlohmann::json document;
-    std::size_t bytes = 0;
-    std::vector<LongString> longStrings;
-};
-inline constexpr char longStringMark = '\x01';
-
 /**
- * Parses a glTF file's JSON; `file` is for messages. Left out as they are met: members of the document that
- * glTF does not know, `extras` but for `extras.heliograph`, and the content of extensions that are not
- * supported. Throws InputError for text that is no JSON, nests too deep, or would take more than it may.
+ * A glTF file's JSON, whose lists of objects (nodes, accessors and the like) stay text: an object of them is
+ * parsed each time that it is asked for. Parsed, a list would take twelve times its text.
  */
-Json readJson(const std::string& file, std::string_view text);
+class Document {
+public:
+    Document() = default;
+    /** `text` must outlast this; `file` is for messages. Left out: members of the document that glTF does not
+     * know, `extras` but for `extras.heliograph`, and the content of extensions that are not supported.
+     * Throws InputError for text that is no JSON, nests too deep, or would take more than it may. */
+    Document(const std::string& file, std::string_view text);
+
+    /** All but the lists of objects, which are empty arrays in it. */
+    const nlohmann::json& root() const { return root_; }
+    /** Whether the document may have a list of objects of that name. */
+    static bool isList(std::string_view name);
+    /** How many objects a list has; 0 for one that is not there. */
+    std::size_t size(std::string_view list) const;
+    /** An object of a list. Adds to `bytes`, if given, about what it takes. Throws InputError for one that
+     * would take more than it may. May be called from several threads. */
+    nlohmann::json element(std::string_view list, std::size_t index, std::size_t* bytes = nullptr) const;
+    /** The long string that a member's value stands for, as it is in the text; none for another value. */
+    std::optional<std::string_view> longString(const std::string& value) const;
+
+    /** About how many bytes this takes. */
+    std::size_t bytes() const { return bytes_; }
+    std::size_t textBytes() const { return text_.size(); }
+
+private:
+    class Parser;
+    std::string file_;
+    std::string_view text_;
+    nlohmann::json root_;
+    std::map<std::string, std::vector<std::size_t>, std::less<>> lists_;  ///< where in the text objects begin
+    std::vector<LongString> longStrings_;
+    std::size_t bytes_ = 0;
+};
 
 }  // namespace helio::gltf

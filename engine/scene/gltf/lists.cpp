@@ -39,10 +39,11 @@ std::size_t sizeOf(Component component) {
     }
 }
 
-std::vector<BufferView> bufferViewsOf(const json& document) {
+std::vector<BufferView> bufferViewsOf(const Document& document) {
     std::vector<BufferView> views;
-    views.reserve(listOf(document, "bufferViews").size());
-    for (const json& from : listOf(document, "bufferViews")) {
+    views.reserve(document.size("bufferViews"));
+    for (std::size_t i = 0; i < document.size("bufferViews"); ++i) {
+        const json from = document.element("bufferViews", i);
         BufferView& view = views.emplace_back();
         view.buffer = integerOr(from, "buffer", 0);
         view.byteOffset = sizeOr(from, "byteOffset", 0);
@@ -52,10 +53,11 @@ std::vector<BufferView> bufferViewsOf(const json& document) {
     return views;
 }
 
-std::vector<Accessor> accessorsOf(const json& document) {
+std::vector<Accessor> accessorsOf(const Document& document) {
     std::vector<Accessor> accessors;
-    accessors.reserve(listOf(document, "accessors").size());
-    for (const json& from : listOf(document, "accessors")) {
+    accessors.reserve(document.size("accessors"));
+    for (std::size_t i = 0; i < document.size("accessors"); ++i) {
+        const json from = document.element("accessors", i);
         Accessor& accessor = accessors.emplace_back();
         const auto& type = from["type"].get_ref<const std::string&>();
         accessor.bufferView = integerOr(from, "bufferView", -1);
@@ -79,10 +81,10 @@ std::vector<Accessor> accessorsOf(const json& document) {
     return accessors;
 }
 
-const json& listOf(const json& document, const char* name) {
+const json& listOf(const json& object, const char* name) {
     static const json empty = json::array();
-    const auto found = document.find(name);
-    return found == document.end() ? empty : *found;
+    const auto found = object.find(name);
+    return found == object.end() ? empty : *found;
 }
 
 int integerOr(const json& object, const char* member, int fallback) {

@@ -1,5 +1,7 @@
 #pragma once
 /** @file What is looked up by index again and again, in a typed form. The rest is read from the JSON. */
+#include "engine/scene/gltf/json_reader.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -46,11 +48,11 @@ struct Accessor {
 };
 
 /** Of a document whose schema is checked. */
-std::vector<BufferView> bufferViewsOf(const nlohmann::json& document);
-std::vector<Accessor> accessorsOf(const nlohmann::json& document);
+std::vector<BufferView> bufferViewsOf(const Document& document);
+std::vector<Accessor> accessorsOf(const Document& document);
 
-/** A list of the document; an empty one where it has none. */
-const nlohmann::json& listOf(const nlohmann::json& document, const char* name);
+/** A member that is a list; an empty one where there is none. */
+const nlohmann::json& listOf(const nlohmann::json& object, const char* name);
 /** A member that is an index or another integer. */
 int integerOr(const nlohmann::json& object, const char* member, int fallback);
 double numberOr(const nlohmann::json& object, const char* member, double fallback);

@@ -224,7 +224,7 @@ private:
     /** The scene's texture for one of the asset's; -1 where it has no image that can be read. */
     int sceneTexture(int texture) {
         if (const auto known = textures_.find(texture); known != textures_.end()) return known->second;
-        const json& from = asset_.document()["textures"][std::size_t(texture)];
+        const json from = asset_.document().element("textures", std::size_t(texture));
         int source = integerOr(from, "source", -1);
         if (const json* const webp = extensionOf(from, "EXT_texture_webp"))
             source = integerOr(*webp, "source", -1);
@@ -237,7 +237,7 @@ private:
         result.name = from.value("name", "");
         result.image = images_.use(source);
         const int sampler = integerOr(from, "sampler", -1);
-        if (sampler >= 0) setSampler(asset_.document()["samplers"][std::size_t(sampler)], result);
+        if (sampler >= 0) setSampler(asset_.document().element("samplers", std::size_t(sampler)), result);
         scene_.textures.push_back(result);
         return textures_[texture] = int(scene_.textures.size()) - 1;
     }
@@ -256,13 +256,12 @@ private:
 void buildMaterials(const Asset& asset, const std::set<int>& used, MemoryBudget& memory, LoadMonitor& monitor,
                     helio::Scene& scene) {
     MaterialBuilder builder(asset, memory, scene);
-    int index = 0;
-    const json& materials = listOf(asset.document(), "materials");
-    memory.take("materials", materials.size() * sizeof(Material), 0);
-    scene.materials.reserve(materials.size());
-    for (const json& material : materials) {
-        scene.materials.push_back(builder.build(material, index, used.contains(index)));
-        ++index;
+    const std::size_t count = asset.document().size("materials");
+    memory.take("materials", count * sizeof(Material), 0);
+    scene.materials.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const json material = asset.document().element("materials", i);
+        scene.materials.push_back(builder.build(material, int(i), used.contains(int(i))));
     }
     builder.finish(monitor);
 }

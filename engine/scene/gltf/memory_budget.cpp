@@ -10,10 +10,10 @@
 
 namespace helio::gltf {
 
-MemoryBudget::MemoryBudget(const Asset& asset)
+MemoryBudget::MemoryBudget(const Asset& asset, std::size_t largest)
     : asset_(asset),
-      most_(std::max(maximumUnfolded(asset.bytes()), sceneProportion * asset.textBytes())),
-      used_(asset.documentBytes() + asset.listBytes()) {}
+      most_(std::max(maximumUnfolded(asset.bytes()), sceneProportion * asset.document().textBytes())),
+      used_(asset.document().bytes() + largest + asset.listBytes()) {}
 
 void MemoryBudget::take(const std::string& place, std::size_t kept, std::size_t transient) {
     if (kept > most_ || transient > most_ || used_ + kept + transient > most_) {

@@ -13,7 +13,8 @@ namespace helio::gltf {
  * maximumUnfolded(). */
 class MemoryBudget {
 public:
-    explicit MemoryBudget(const Asset& asset);
+    /** `largest`: what the document's largest object takes while it is looked at. */
+    MemoryBudget(const Asset& asset, std::size_t largest);
 
     /** Takes memory that stays, and asks for some that goes again. Refuses before either is there. */
     void take(const std::string& place, std::size_t kept, std::size_t transient);

@@ -68,7 +68,7 @@ private:
      * depend on them. */
     void checkBounds(int accessor, const std::vector<glm::vec3>& positions) const {
         if (asset_.accessor(accessor).isNormalized) return;
-        const json& from = asset_.document()["accessors"][std::size_t(accessor)];
+        const json from = asset_.document().element("accessors", std::size_t(accessor));
         using Box = std::pair<glm::vec3, glm::vec3>;
         const auto join = [](const Box& a, const Box& b) {
             return Box(glm::min(a.first, b.first), glm::max(a.second, b.second));
@@ -184,7 +184,7 @@ private:
             if (isTexcoord && std::size_t(set) >= primitive.texcoords.size())
                 skip(scene_, "attribute " + name.substr(0, 40), "a set before it is missing");
         }
-        const bool hasSkins = asset_.document().contains("skins");
+        const bool hasSkins = asset_.document().size("skins") > 0;
         for (int set = 0; hasSkins && readInfluences(attributes, set, primitive); ++set) {
         }
         const json& targets = listOf(from, "targets");
@@ -290,7 +290,7 @@ private:
 };
 
 void readVariantNames(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
-    const json* const extension = extensionOf(asset.document(), "KHR_materials_variants");
+    const json* const extension = extensionOf(asset.document().root(), "KHR_materials_variants");
     if (extension == nullptr) return;
     const json& variants = (*extension)["variants"];
     memory.take("extensions.KHR_materials_variants.variants", variants.size() * sizeof(std::string), 0);
@@ -329,11 +329,12 @@ std::vector<float> morphWeights(const Asset& asset, const json& object, std::siz
 
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
     readVariantNames(asset, memory, scene);
-    const json& meshes = listOf(asset.document(), "meshes");
-    memory.take("meshes", meshes.size() * sizeof(Mesh), 0);
-    scene.meshes.reserve(meshes.size());
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const json &from = meshes[m], &primitives = from["primitives"];
+    const std::size_t count = asset.document().size("meshes");
+    memory.take("meshes", count * sizeof(Mesh), 0);
+    scene.meshes.reserve(count);
+    for (std::size_t m = 0; m < count; ++m) {
+        const json from = asset.document().element("meshes", m);
+        const json& primitives = from["primitives"];
         Mesh mesh;
         memory.take(fmt::format("meshes[{}].primitives", m), primitives.size() * sizeof(Primitive), 0);
         mesh.primitives.reserve(primitives.size());
@@ -341,8 +342,7 @@ void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor,
         const std::size_t targets = listOf(primitives[0], "targets").size();
         for (std::size_t p = 0; p < primitives.size(); ++p) {
             const json& primitive = primitives[p];
-            monitor.report("geometry",
-                           (double(m) + double(p) / double(primitives.size())) / double(meshes.size()));
+            monitor.report("geometry", (double(m) + double(p) / double(primitives.size())) / double(count));
             const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
             if (const std::size_t own = listOf(primitive, "targets").size(); own != targets) {
                 throw InputError(asset.file(), place + ".targets",

@@ -14,7 +14,8 @@ namespace {
 using nlohmann::json;
 
 void buildCameras(const Asset& asset, helio::Scene& scene) {
-    for (const json& from : listOf(asset.document(), "cameras")) {
+    for (std::size_t i = 0; i < asset.document().size("cameras"); ++i) {
+        const json from = asset.document().element("cameras", i);
         Camera camera;
         camera.name = from.value("name", "");
         camera.perspective = from["type"] == "perspective";
@@ -41,7 +42,7 @@ void buildCameras(const Asset& asset, helio::Scene& scene) {
 
 /** KHR_lights_punctual. Candela and lux are taken as W/sr and W/m^2 (the contract's radiometry). */
 void buildLights(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
-    const json& document = asset.document();
+    const json& document = asset.document().root();
     const json::json_pointer path("/extensions/KHR_lights_punctual/lights");
     if (!document.contains(path)) return;
     memory.take("extensions.KHR_lights_punctual.lights", document[path].size() * sizeof(PunctualLight), 0);
@@ -154,7 +155,7 @@ Node nodeOf(const Asset& asset, const json& from, std::size_t index, MemoryBudge
     }
     node.camera = integerOr(from, "camera", -1);
     const std::size_t meshes = scene.meshes.size();
-    extras::readNode(asset.file(), from, index, listOf(asset.document(), "materials").size(), node, scene);
+    extras::readNode(asset.file(), from, index, asset.document().size("materials"), node, scene);
     if (scene.meshes.size() > meshes) memory.take("nodes", sizeof(Mesh) + sizeof(Primitive), 0);
     for (const auto& [name, value] : extensionsOf(from).items()) {
         if (name == "KHR_lights_punctual") {
@@ -207,32 +208,32 @@ std::vector<int> parents(const Asset& asset, const helio::Scene& scene) {
 }  // namespace
 
 void buildNodes(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
-    const json& document = asset.document();
-    const json &nodes = listOf(document, "nodes"), &cameras = listOf(document, "cameras");
-    memory.take("cameras", cameras.size() * sizeof(Camera), 0);
-    scene.cameras.reserve(cameras.size());
+    const Document& document = asset.document();
+    const std::size_t nodes = document.size("nodes"), cameras = document.size("cameras");
+    memory.take("cameras", cameras * sizeof(Camera), 0);
+    scene.cameras.reserve(cameras);
     buildCameras(asset, scene);
     buildLights(asset, memory, scene);
     // A node's own, its children's indices in the list, and as an instance.
-    memory.take("nodes", nodes.size() * (sizeof(Node) + 3 * sizeof(int) + sizeof(Instance)), 0);
-    scene.nodes.reserve(nodes.size());
-    for (const json& node : nodes)
-        scene.nodes.push_back(nodeOf(asset, node, scene.nodes.size(), memory, scene));
+    memory.take("nodes", nodes * (sizeof(Node) + 3 * sizeof(int) + sizeof(Instance)), 0);
+    scene.nodes.reserve(nodes);
+    for (std::size_t i = 0; i < nodes; ++i)
+        scene.nodes.push_back(nodeOf(asset, document.element("nodes", i), i, memory, scene));
     const std::vector<int> parent = parents(asset, scene);
-    const json& scenes = listOf(document, "scenes");
-    if (scenes.empty()) {
+    const std::size_t scenes = document.size("scenes");
+    if (scenes == 0) {
         for (std::size_t i = 0; i < parent.size(); ++i) {
             if (parent[i] < 0) scene.roots.push_back(int(i));
         }
         return;
     }
-    const auto shown = std::size_t(integerOr(document, "scene", 0));
-    if (scenes.size() > 1) {
-        skip(scene, fmt::format("{} further scenes", scenes.size() - 1),
-             fmt::format("scene {} is shown", shown));
+    const auto shown = std::size_t(integerOr(document.root(), "scene", 0));
+    if (scenes > 1) {
+        skip(scene, fmt::format("{} further scenes", scenes - 1), fmt::format("scene {} is shown", shown));
     }
     std::vector<bool> isNamed(parent.size(), false);
-    for (const json& named : listOf(scenes[shown], "nodes")) {
+    const json from = document.element("scenes", shown);
+    for (const json& named : listOf(from, "nodes")) {
         const int root = named.get<int>();
         const bool isTwice = isNamed[std::size_t(root)];
         isNamed[std::size_t(root)] = true;

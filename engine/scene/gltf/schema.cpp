@@ -1,5 +1,6 @@
 #include "engine/scene/gltf/schema.hpp"
 
+#include "engine/scene/extras/extras.hpp"
 #include "engine/scene/gltf/schema_check.hpp"
 
 #include <fmt/format.h>
@@ -249,73 +250,97 @@ bool isAtMostTwo(std::string_view version) {
     return major == "2" && minor.find_first_not_of('0') == minor.npos;
 }
 
-const Check& documentCheck() {
+/** Of an object of each of the document's lists, in the order in which they are checked. */
+const std::vector<Property>& listChecks() {
     const Check imageBasedUse =
         object({{"light", indexInto("extensions.EXT_lights_image_based.lights"), required}});
     const Check webp = object({{"source", indexInto("images"), required}});
-    static const Check check = object({
+    static const std::vector<Property> checks = {
+        {"buffers", object({{"uri", string()}, {"byteLength", integer(1, maximumSize), required}})},
+        {"bufferViews", object({{"buffer", indexInto("buffers"), required},
+                                {"byteOffset", size()},
+                                {"byteLength", integer(1, maximumSize), required},
+                                {"byteStride", integer(4, 252)},
+                                {"target", integer(0, maximumInt)},
+                                {"extensions", object({})}})},
+        {"accessors", accessor()},
+        {"images", object({{"name", string()},
+                           {"uri", string()},
+                           {"mimeType", string()},
+                           {"bufferView", indexInto("bufferViews")}})},
+        {"samplers", object({{"magFilter", oneOf({9728, 9729})},
+                             {"minFilter", oneOf({9728, 9729, 9984, 9985, 9986, 9987})},
+                             {"wrapS", oneOf({33071, 33648, 10497})},
+                             {"wrapT", oneOf({33071, 33648, 10497})}})},
+        {"textures", object({{"name", string()},
+                             {"sampler", indexInto("samplers")},
+                             {"source", indexInto("images")},
+                             {"extensions", object({{"EXT_texture_webp", webp}})}})},
+        {"materials", material()},
+        {"meshes", mesh()},
+        {"cameras", camera()},
+        {"nodes", node()},
+        {"skins", skin()},
+        {"animations", animation()},
+        {"scenes", object({{"name", string()},
+                           {"nodes", arrayOf(indexInto("nodes"))},
+                           {"extensions", object({{"EXT_lights_image_based", imageBasedUse}})}})},
+    };
+    return checks;
+}
+
+/** Of the document without the objects of its lists. */
+Check rootCheck() {
+    std::vector<Property> members = {
         {"asset", asset(), required},
         {"extensionsUsed", arrayOf(string())},
         {"extensionsRequired", arrayOf(string())},
-        {"buffers", arrayOf(object({{"uri", string()}, {"byteLength", integer(1, maximumSize), required}}))},
-        {"bufferViews", arrayOf(object({{"buffer", indexInto("buffers"), required},
-                                        {"byteOffset", size()},
-                                        {"byteLength", integer(1, maximumSize), required},
-                                        {"byteStride", integer(4, 252)},
-                                        {"target", integer(0, maximumInt)},
-                                        {"extensions", object({})}}))},
-        {"accessors", arrayOf(accessor())},
-        {"images", arrayOf(object({{"name", string()},
-                                   {"uri", string()},
-                                   {"mimeType", string()},
-                                   {"bufferView", indexInto("bufferViews")}}))},
-        {"samplers", arrayOf(object({{"magFilter", oneOf({9728, 9729})},
-                                     {"minFilter", oneOf({9728, 9729, 9984, 9985, 9986, 9987})},
-                                     {"wrapS", oneOf({33071, 33648, 10497})},
-                                     {"wrapT", oneOf({33071, 33648, 10497})}}))},
-        {"textures", arrayOf(object({{"name", string()},
-                                     {"sampler", indexInto("samplers")},
-                                     {"source", indexInto("images")},
-                                     {"extensions", object({{"EXT_texture_webp", webp}})}}))},
-        {"materials", arrayOf(material())},
-        {"meshes", arrayOf(mesh())},
-        {"cameras", arrayOf(camera())},
-        {"nodes", arrayOf(node())},
-        {"skins", arrayOf(skin())},
-        {"animations", arrayOf(animation())},
-        {"scenes", arrayOf(object({{"name", string()},
-                                   {"nodes", arrayOf(indexInto("nodes"))},
-                                   {"extensions", object({{"EXT_lights_image_based", imageBasedUse}})}}))},
         {"scene", indexInto("scenes")},
         {"extensions",
          object({{"EXT_lights_image_based", object({{"lights", arrayOf(imageBasedLight()), required}})},
                  {"KHR_lights_punctual", object({{"lights", arrayOf(light()), required}})},
                  {"KHR_materials_variants",
                   object({{"variants", arrayOf(object({{"name", string(), required}})), required}})}})},
-    });
-    return check;
+    };
+    for (const Property& list : listChecks()) members.push_back({list.name, arrayOf(object({}))});
+    return object(std::move(members));
 }
 
 }  // namespace
 
-void checkSchema(const std::string& file, const nlohmann::json& document) {
+std::size_t checkSchema(const std::string& file, const Document& document) {
     const Context context{file, document};
     const Place root;
-    if (!document.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
+    const nlohmann::json& json = document.root();
+    if (!json.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
     const Place asset{&root, "asset", 0};
     const nlohmann::json::json_pointer version("/asset/version");
     // First: all else that is wrong with a glTF 1.0 file, objects where 2.0 has arrays, would mislead.
-    if (document.contains(version) && document[version].is_string() &&
-        !document[version].get_ref<const std::string&>().starts_with("2.")) {
+    if (json.contains(version) && json[version].is_string() &&
+        !json[version].get_ref<const std::string&>().starts_with("2.")) {
         refuse(context, Place{&asset, "version", 0},
-               "is '" + document[version].get_ref<const std::string&>().substr(0, 20) + "'", "give glTF 2.0");
+               "is '" + json[version].get_ref<const std::string&>().substr(0, 20) + "'", "give glTF 2.0");
     }
-    documentCheck()(context, root, document);
-    const std::string minimum = document["asset"].value("minVersion", "2.0");
+    static const Check checkRoot = rootCheck();
+    checkRoot(context, root, json);
+    const std::string minimum = json["asset"].value("minVersion", "2.0");
     if (!isAtMostTwo(minimum)) {
         refuse(context, Place{&asset, "minVersion", 0}, "is '" + minimum.substr(0, 20) + "', above 2.0",
                "export the file as glTF 2.0");
     }
+    extras::checkDocument(file, json);
+    std::size_t largest = 0;
+    for (const Property& list : listChecks()) {
+        const Place place{&root, list.name, 0};
+        for (std::size_t i = 0; i < document.size(list.name); ++i) {
+            std::size_t bytes = 0;
+            const nlohmann::json element = document.element(list.name, i, &bytes);
+            list.check(context, Place{&place, nullptr, i}, element);
+            extras::check(file, list.name, i, element);
+            largest = std::max(largest, bytes);
+        }
+    }
+    return largest;
 }
 
 }  // namespace helio::gltf

@@ -13,17 +13,18 @@ namespace {
 
 using nlohmann::json;
 
-/** The array at a path of the form "a" or "a.b.c"; nullptr where there is none. */
-const json* find(const json& document, std::string_view path) {
-    const json* at = &document;
+/** Elements of the array at a path of the form "a" or "a.b.c"; 0 where there is none. */
+std::size_t sizeOf(const Document& document, std::string_view path) {
+    if (Document::isList(path)) return document.size(path);
+    const json* at = &document.root();
     while (true) {
         const std::size_t dot = path.find('.');
         const std::string key(path.substr(0, dot));
-        if (!at->is_object()) return nullptr;
+        if (!at->is_object()) return 0;
         const auto found = at->find(key);
-        if (found == at->end()) return nullptr;
+        if (found == at->end()) return 0;
         at = &*found;
-        if (dot == std::string_view::npos) return at->is_array() ? at : nullptr;
+        if (dot == std::string_view::npos) return at->is_array() ? at->size() : 0;
         path.remove_prefix(dot + 1);
     }
 }
@@ -106,8 +107,7 @@ Check integer(double low, double high) {
 
 Check indexInto(const char* array) {
     return [array](const Context& context, const Place& place, const json& value) {
-        const json* const target = find(context.document, array);
-        const std::size_t size = target != nullptr ? target->size() : 0;
+        const std::size_t size = sizeOf(context.document, array);
         const double x = value.is_number() ? value.get<double>() : NAN;
         if (x >= 0 && x < double(size) && x == std::floor(x)) return;
         refuse(context, place, fmt::format("is {}, no index into {}", shown(value), array),

@@ -1,5 +1,7 @@
 #pragma once
 /** @file Small checks that compose into a schema for a JSON document. */
+#include "engine/scene/gltf/json_reader.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -19,7 +21,7 @@ struct Place {
 
 struct Context {
     const std::string& file;
-    const nlohmann::json& document;
+    const Document& document;
 };
 
 using Check = std::function<void(const Context&, const Place&, const nlohmann::json&)>;

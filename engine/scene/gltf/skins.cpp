@@ -56,11 +56,11 @@ int greatestJoint(const Mesh& mesh) {
 }  // namespace
 
 void buildSkins(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
-    const auto found = asset.document().find("skins");
-    if (found == asset.document().end()) return;
-    scene.skins.reserve(found->size());
-    for (std::size_t i = 0; i < found->size(); ++i) {
-        const json& from = (*found)[i];
+    const std::size_t count = asset.document().size("skins");
+    if (count == 0) return;
+    scene.skins.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const json from = asset.document().element("skins", i);
         memory.take(fmt::format("skins[{}].joints", i), from["joints"].size() * sizeof(int) + sizeof(Skin),
                     0);
         Skin skin;
