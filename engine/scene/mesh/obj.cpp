@@ -77,6 +77,10 @@ public:
         sizes_[TexCoord] += chunk.texcoords.size();
         sizes_[Normal] += chunk.normals.size();
         hasColors_ = hasColors_ || !chunk.colors.empty();
+        if (isTooMany(triangles_, sizes_[Position])) {
+            throw InputError(file_, fmt::format("line {}", lines_),
+                             tooManyFault(triangles_, sizes_[Position]), tooManyRemedy);
+        }
         placed.chunk = std::move(chunk);
         chunks_.push_back(std::move(placed));
     }

@@ -154,6 +154,8 @@ private:
     void face(std::string_view line) {
         face_.clear();
         for (std::string_view word = takeWord(line); !word.empty() && word[0] != '#'; word = takeWord(line)) {
+            if (face_.size() == maximumCorners)
+                refuse(fmt::format("a face has more than {} corners", maximumCorners), "give smaller faces");
             face_.push_back(corner(word));
         }
         if (face_.size() < 3) {

@@ -36,6 +36,9 @@ public:
     Scene read() {
         for (const std::string& line : header_.unknown) warn(scene_, line);
         for (const PlyElement& element : header_.elements) {
+            if (element.name == "vertex") vertexCount_ += std::size_t(element.count);
+        }
+        for (const PlyElement& element : header_.elements) {
             checkCount(element);
             if (element.name == "vertex") {
                 readVertices(element);
@@ -205,7 +208,8 @@ private:
             throw InputError(file_, "element " + element.name, "has no list vertex_indices",
                              "give the corners of the faces");
         }
-        if (!isStrips) primitive_.indices.reserve(std::size_t(element.count) * 3);
+        if (!isStrips && !isTooMany(std::size_t(element.count), vertexCount_))
+            primitive_.indices.reserve(std::size_t(element.count) * 3);
         for (const PlyProperty& property : element.properties) {
             if (!isCorners(property))
                 helio::skip(scene_, "PLY " + element.name + " property " + property.name,
@@ -234,6 +238,11 @@ private:
                 }
                 corners.clear();
                 const std::uint64_t size = listSize(property);
+                if (size > maximumCorners) {
+                    values_.refuse(fmt::format("{} has {} entries", property.name, size),
+                                   fmt::format("give at most {}", maximumCorners));
+                }
+                checkTriangles(size);
                 constexpr std::uint64_t large = 1 << 16;  // else they double, and double the memory
                 if (size > large) {
                     corners.reserve(std::size_t(size));
@@ -280,8 +289,10 @@ private:
         const std::size_t before = indices.size();
         if (before == 0) {  // else they double, and double the memory
             const std::uint64_t left = values_.left() / layout.size(corners);
-            indices.reserve(std::size_t(std::min(facesLeft, left)) * triangles * 3);
+            const std::size_t likely = std::size_t(std::min(facesLeft, left)) * triangles;
+            if (!isTooMany(likely, vertexCount_)) indices.reserve(likely * 3);
         }
+        checkTriangles(size * triangles);
         indices.resize(before + size * triangles * 3);
         const DecodedFaces decoded =
             decodeFaces(records, layout, corners, values_.isSwapped(), std::span(indices).subspan(before));
@@ -295,6 +306,14 @@ private:
         }
         values_.take(decoded.count * layout.size(corners));
         return decoded.count;
+    }
+
+    /** Before memory is taken for more. */
+    void checkTriangles(std::size_t more) const {
+        const std::size_t triangles = primitive_.indices.size() / 3 + more;
+        if (isTooMany(triangles, vertexCount_))
+            throw InputError(file_, "element " + *elementName_, tooManyFault(triangles, vertexCount_),
+                             tooManyRemedy);
     }
 
     void addFace(const std::vector<std::int32_t>& corners) {
@@ -369,6 +388,7 @@ private:
     Primitive primitive_;
     std::array<bool, slotCount> has_{};
     std::vector<Fan> fans_;
+    std::size_t vertexCount_ = 0;  ///< that the header says
     std::int64_t highest_ = -1;
     const std::string* elementName_ = nullptr;  ///< of the face that is being read
     std::uint64_t index_ = 0;

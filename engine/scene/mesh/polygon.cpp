@@ -90,6 +90,10 @@ bool triangulate(std::span<const glm::vec3> polygon, std::vector<std::uint32_t>&
     return true;
 }
 
+std::string tooManyFault(std::size_t triangles, std::size_t vertices) {
+    return fmt::format("there are {} triangles for {} vertices", triangles, vertices);
+}
+
 std::string largePolygonWarning() {
     return fmt::format("polygons of more than {} corners are shown as if they were convex",
                        maximumEarClipping);

@@ -13,6 +13,18 @@ namespace helio::mesh {
 /** Above this many corners a polygon that is not convex is cut into a fan, as a convex one. */
 constexpr std::size_t maximumEarClipping = 512;
 
+/** A corner may be a byte in the file and takes twelve bytes as a triangle. A polygon has no more corners,
+ * and where there are many triangles, vertices have no more of them on average than this: no mesh comes near.
+ */
+constexpr std::size_t maximumCorners = std::size_t(1) << 22;
+constexpr std::size_t manyTriangles = std::size_t(1) << 23, maximumPerVertex = 8;
+constexpr bool isTooMany(std::size_t triangles, std::size_t vertices) {
+    return triangles > manyTriangles && triangles / maximumPerVertex > vertices;
+}
+/** What is wrong with it then, and what to do. */
+std::string tooManyFault(std::size_t triangles, std::size_t vertices);
+constexpr const char* tooManyRemedy = "give each triangle once";
+
 /**
  * Cuts a polygon of n > 3 corners into n - 2 triangles by ear clipping (Meisters 1975), in the plane across
  * its vector area. False where the fan (0, k, k + 1) will do, for a convex polygon or one of no area;
