@@ -35,6 +35,18 @@ public:
     static constexpr std::uint64_t standard = std::uint64_t(240) << 20;
 
     explicit ImageBudget(std::uint64_t allowance = standard) : left_(allowance) {}
+    /** For an image that is decoded without being kept. */
+    static ImageBudget trial() {
+        ImageBudget budget;
+        budget.isTrial_ = true;
+        return budget;
+    }
+    bool isTrial() const { return isTrial_; }
+    /** Whether an image that is decoded row by row is to be tried first: a damaged one must not take what a
+     * whole one may. */
+    static bool wantsTrial(std::uint64_t bytes, std::uint64_t encoded) {
+        return bytes > 2 * encoded + (std::uint64_t(96) << 20);
+    }
 
     /** To be said before each image. */
     void begin() { held_ = 0; }
@@ -65,7 +77,7 @@ private:
     }
 
     std::uint64_t left_, held_ = 0;
-    bool isExceeded_ = false;
+    bool isExceeded_ = false, isTrial_ = false;
 };
 
 /** What the module exports. Every function returns what went wrong, empty for success. */

@@ -150,6 +150,11 @@ public:
         const bool byRows = format == "openexr" || format == "hdr";
         if (!byRows && !budget.hold(spec.image_bytes(true), encoded))
             return unfoldsTo(std::uint32_t(spec.width), std::uint32_t(spec.height), encoded);
+        const std::uint64_t texels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
+        if (byRows && !budget.isTrial() && ImageBudget::wantsTrial(texels * 4 * sizeof(float), encoded)) {
+            ImageBudget trial = ImageBudget::trial();
+            if (std::string fault = decodeFile(file, trial, image); !fault.empty()) return fault;
+        }
         return readAnyTexels(*input, spec, encoded, budget, image);
     } catch (const std::exception& error) {
         return oneLine(error.what());

@@ -27,7 +27,8 @@ public:
     template <class ReadRows>
     std::string read(std::uint32_t together, ReadRows&& readRows, DecodedImage& image) {
         constexpr std::size_t smallImage = std::size_t(1) << 18, stripBytes = std::size_t(1) << 22;
-        if (std::size_t(width_) * height_ <= smallImage && !allocate()) return tooLarge();
+        if (std::size_t(width_) * height_ <= smallImage && !budget_.isTrial() && !allocate())
+            return tooLarge();
         const std::size_t row = std::size_t(width_) * channels_ * sizeof(T);
         const auto strip =
             std::min(height_, together > 0 ? together
@@ -42,6 +43,7 @@ public:
             spread.resize(texels * 4);
             spreadToRgba(stored, spread);
             if (y == 0) std::copy_n(spread.data(), 4, color_.data());
+            if (budget_.isTrial()) continue;
             if (texels_.empty() && !isOneColor(spread) && !allocate()) return tooLarge();
             if (!texels_.empty())
                 std::copy(spread.begin(), spread.end(), &texels_[std::size_t(width_) * 4 * y]);
