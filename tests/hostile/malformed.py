@@ -6,8 +6,10 @@ import struct
 import zlib
 
 import good_files as good
+import large_files
 
-CASES = []  # (name, {file name: content}); the first file is the one to open
+CASES = []  # (name, {file name: content, or what makes it}); the first file is the one to open
+GOOD = set()  # names of those that nothing is wrong with: they must render without a word
 
 
 class Link(str):
@@ -530,11 +532,18 @@ def stl_files():
     case("random", bytes((i * 7919 + i * i * 31) % 256 for i in range(3000)), "stl")
 
 
+def memory():
+    for name, extension, content, others, is_good in large_files.FILES:
+        case("large-" + name, content, extension, **others)
+        if is_good:
+            GOOD.add(CASES[-1][0])
+
+
 def unknown_files():
     case("scene", b"whatever", "fbx")
     case("scene", b"whatever", "")
 
 
 for make in (glb_truncations, glb_headers, gltf_truncations, gltf_text_faults, gltf_accessors, gltf_numbers, gltf_nodes,
-             gltf_transforms, gltf_cameras, gltf_files, gltf_others, obj_files, ply_files, stl_files, unknown_files):
+             gltf_transforms, gltf_cameras, gltf_files, gltf_others, obj_files, ply_files, stl_files, memory, unknown_files):
     make()
