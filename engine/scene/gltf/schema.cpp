@@ -311,24 +311,24 @@ Check rootCheck() {
 std::size_t checkSchema(const std::string& file, const Document& document) {
     const Context context{file, document};
     const Place root;
-    const nlohmann::json& json = document.root();
-    if (!json.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
+    const nlohmann::json& top = document.root();
+    if (!top.is_object()) refuse(context, root, "its JSON is no object", "give a glTF 2.0 document");
     const Place asset{&root, "asset", 0};
     const nlohmann::json::json_pointer version("/asset/version");
     // First: all else that is wrong with a glTF 1.0 file, objects where 2.0 has arrays, would mislead.
-    if (json.contains(version) && json[version].is_string() &&
-        !json[version].get_ref<const std::string&>().starts_with("2.")) {
+    if (top.contains(version) && top[version].is_string() &&
+        !top[version].get_ref<const std::string&>().starts_with("2.")) {
         refuse(context, Place{&asset, "version", 0},
-               "is '" + json[version].get_ref<const std::string&>().substr(0, 20) + "'", "give glTF 2.0");
+               "is '" + top[version].get_ref<const std::string&>().substr(0, 20) + "'", "give glTF 2.0");
     }
     static const Check checkRoot = rootCheck();
-    checkRoot(context, root, json);
-    const std::string minimum = json["asset"].value("minVersion", "2.0");
+    checkRoot(context, root, top);
+    const std::string minimum = top["asset"].value("minVersion", "2.0");
     if (!isAtMostTwo(minimum)) {
         refuse(context, Place{&asset, "minVersion", 0}, "is '" + minimum.substr(0, 20) + "', above 2.0",
                "export the file as glTF 2.0");
     }
-    extras::checkDocument(file, json);
+    extras::checkDocument(file, top);
     std::size_t largest = 0;
     for (const Property& list : listChecks()) {
         const Place place{&root, list.name, 0};
