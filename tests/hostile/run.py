@@ -48,7 +48,8 @@ MEASURE = ("import os, sys; child = os.spawnv(os.P_NOWAIT, sys.argv[1], sys.argv
 def memory_of(folder, *command):
     """The peak of the program's resident set, for what must end well."""
     ended = subprocess.run([sys.executable, "-S", "-E", "-c", MEASURE, program, *command], cwd=folder, check=True,
-                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                           env=dict(os.environ, MESA_SHADER_CACHE_DISABLE="true"))  # kernels are compiled, as for a new scene
     return int(ended.stdout.split()[-1]) * 1024
 
 

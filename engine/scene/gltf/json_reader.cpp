@@ -290,6 +290,7 @@ private:
         if (leftOut_ > 0) {
             --leftOut_;
         } else {
+            if (open_.back().part == Part::List) list_->push_back(place_);
             open_.pop_back();
         }
         return true;
@@ -339,7 +340,16 @@ bool Document::isList(std::string_view name) {
 
 std::size_t Document::size(std::string_view list) const {
     const auto found = lists_.find(list);
-    return found == lists_.end() ? 0 : found->second.size();
+    return found == lists_.end() ? 0 : found->second.size() - 1;
+}
+
+std::size_t Document::longest(std::string_view list) const {
+    const auto found = lists_.find(list);
+    std::size_t longest = 0;
+    if (found == lists_.end()) return longest;
+    const std::vector<std::size_t>& begins = found->second;
+    for (std::size_t i = 1; i < begins.size(); ++i) longest = std::max(longest, begins[i] - begins[i - 1]);
+    return longest;
 }
 
 json Document::element(std::string_view list, std::size_t index, std::size_t* bytes) const {

@@ -48,6 +48,8 @@ public:
     static bool isList(std::string_view name);
     /** How many objects a list has; 0 for one that is not there. */
     std::size_t size(std::string_view list) const;
+    /** Bytes of text that a list's longest object has. */
+    std::size_t longest(std::string_view list) const;
     /** An object of a list. Adds to `bytes`, if given, about what it takes. Throws InputError for one that
      * would take more than it may. May be called from several threads. */
     nlohmann::json element(std::string_view list, std::size_t index, std::size_t* bytes = nullptr) const;
@@ -63,7 +65,8 @@ private:
     std::string file_;
     std::string_view text_;
     nlohmann::json root_;
-    std::map<std::string, std::vector<std::size_t>, std::less<>> lists_;  ///< where in the text objects begin
+    std::map<std::string, std::vector<std::size_t>, std::less<>>
+        lists_;  ///< where in the text objects begin, and the list ends
     std::vector<LongString> longStrings_;
     std::size_t bytes_ = 0;
 };
