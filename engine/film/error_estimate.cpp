@@ -272,10 +272,11 @@ ErrorEstimate estimateError(const FilmImages& images) {
     const double statistical = std::sqrt(terms.variance) / terms.sum;
     const double denominator = std::abs(std::log(terms.ownSum / terms.sum));
     // Errors are skewed upwards: what few samples saw is missed by the estimate and its spread alike. The
-    // quantiles are those that bench_error coverage measures.
+    // quantiles are those that bench_error coverage measures; since the spread is an estimate too, their mean
+    // is a little above a normal variable's 1.96.
     const double doubt = modelError + denominatorDoubt * denominator;
-    result.low = result.relmse * std::exp(-std::hypot(1.8 * statistical, doubt));
-    result.high = result.relmse * std::exp(std::hypot(2.12 * statistical, doubt));
+    result.low = result.relmse * std::exp(-std::hypot(1.86 * statistical, doubt));
+    result.high = result.relmse * std::exp(std::hypot(2.2 * statistical, doubt));
     double fewest = HUGE_VAL;
     for (std::size_t i = 0; i < images.mean.size(); i += 4)
         fewest = std::min(fewest, double(images.mean[i + 3]));
