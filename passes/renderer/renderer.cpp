@@ -191,10 +191,16 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
     const RenderOptions& options = job.options;
     if (!job.notify({.stage = "load"})) return;
     View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
-    // What ambient occlusion shows is no luminance.
-    if (view.camera.exposure && options.integrator != Integrator::AmbientOcclusion)
-        job.result.exposure = exposureStops(*view.camera.exposure);
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
+    // What ambient occlusion shows is no luminance, and no more is the light of a scene that has none.
+    const bool isGiven = environment == (options.environment ? options.environment : scene.environment);
+    if (view.camera.exposure && options.integrator != Integrator::AmbientOcclusion) {
+        if (isGiven)
+            job.result.exposure = exposureStops(*view.camera.exposure);
+        else
+            job.result.warnings.emplace_back(
+                "the camera's exposure is left out: it is meant for the light of the scene, which has none");
+    }
     warnOfTexcoords(scene, job.result.warnings);
     const bool path = options.pipeline == Pipeline::Path;
     if (options.integrator == Integrator::Radiosity) checkPatches(scene, job.result);

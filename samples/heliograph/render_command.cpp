@@ -440,7 +440,8 @@ void addRenderCommand(CLI::App& app, Command& run) {
         ->check(CLI::Range(1u, (1u << 24) - 1))
         ->capture_default_str();
     command->add_flag("--adaptive", options.adaptive,
-                      "Take more of the samples where the error is large; the image stays unbiased");
+                      "Take more of the samples where the error is large, --spp on average; the mean stays "
+                      "unbiased");
     command->add_option("--time", options.maxSeconds, "Stop after so many seconds of rendering")
         ->check(CLI::PositiveNumber);
     command

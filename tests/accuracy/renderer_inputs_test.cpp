@@ -202,5 +202,25 @@ TEST(RendererInputs, VerticesTooFarFromTheirOriginAreWarnedOf) {
     }
 }
 
+/** A camera's exposure is for the light of the scene: what has none is not shown black. */
+TEST(RendererInputs, TheDefaultLightIsNotExposed) {
+    Scene scene = glowingSquare();
+    const Exposure exposure{16, 0.01f, 100};
+    scene.cameras[0].exposure = exposure;
+    for (const Pipeline pipeline : kBoth) {
+        RenderOptions options = small(pipeline);
+        EXPECT_EQ(renderer().render(scene, options).exposure, exposureStops(exposure));
+        Scene dark = scene;
+        dark.materials[0].emission = glm::vec3(0.0f);
+        const RenderResult shown = renderer().render(dark, options);
+        EXPECT_EQ(shown.exposure, 0.0);
+        EXPECT_TRUE(std::ranges::any_of(shown.warnings, [](const std::string& warning) {
+            return warning.find("exposure is left out") != std::string::npos;
+        }));
+        options.environment = Environment{glm::vec3(2.0f)};
+        EXPECT_EQ(renderer().render(dark, options).exposure, exposureStops(exposure));
+    }
+}
+
 }  // namespace
 }  // namespace helio
