@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """Plants small faults in shaders and engine, one at a time, and runs the tests that should notice.
 
-    tests/mutation/mutation.py BUILD [--only PATTERN] [--sample N] [--engine] [--work FOLDER] [--report FILE]
+    tests/mutation/mutation.py BUILD [--only PATTERN] [--sample N] [--engine] [--jobs N] [--anew] [--work FOLDER]
+                               [--report FILE]
 
 BUILD is a Release build of this tree. The faults are those of faults.txt. Faults in shaders need no build: a folder that
 holds the faulty file lies over the embedded ones (HELIOGRAPH_SHADER_DIR). Faults in the engine are planted in a copy of
-the tree with a build of its own, only with --engine. Results are kept in FOLDER/results.json, and what is there is not
-run again; delete it to begin anew. Exit 1 where a fault survives that `survivors.txt` does not explain.
+the tree with a build of its own, only with --engine. A test is run without any fault first: it must pass, and a fault
+that makes it take ten times as long, and no less than a minute, has hung it and counts as caught. Results are kept in
+FOLDER/results.json, and what is there is not run again but with --anew. Exit 1 where a fault survives that
+`survivors.txt` does not explain.
 """
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -16,12 +20,13 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 SEPARATOR = "  =>  "
-LIMIT_SECONDS = 900  # of one test; a fault that makes it hang is noticed by that
+LIMIT_SECONDS = 900  # of one test without a fault
 
 
 class Fault:
@@ -77,7 +82,7 @@ def executable(build, name):
     return found[0] if found else None
 
 
-def run_test(build, test, environment):
+def run_test(build, test, environment, limit=LIMIT_SECONDS):
     """What a test did: "passed", "failed", "hung" or "missing", and the first failed case."""
     program = executable(build, test[0])
     if program is None:
@@ -85,7 +90,7 @@ def run_test(build, test, environment):
     command = [program] + ([f"--gtest_filter={test[1]}"] if len(test) > 1 else [])
     try:
         done = subprocess.run(command + ["--gtest_fail_fast"], env=environment, cwd=build, capture_output=True,
-                              text=True, errors="replace", timeout=LIMIT_SECONDS)
+                              text=True, errors="replace", timeout=limit)
     except subprocess.TimeoutExpired:
         return "hung", ""
     if done.returncode == 0:
@@ -96,31 +101,63 @@ def run_test(build, test, environment):
     return "failed", case[1] if case else f"exit {done.returncode}"
 
 
-def judge(build, tests, environment):
-    for test in tests:
-        state, detail = run_test(build, test, environment)
+class CleanRuns:
+    """What each test does without any fault, kept with the results: each is run once."""
+
+    def __init__(self, results):
+        self.known = results.setdefault("clean", {})
+        self.lock = threading.Lock()
+
+    @staticmethod
+    def key(build, test):
+        return f"{'engine: ' if build.name == 'engine' else ''}{' '.join(test)}"
+
+    def knows(self, build, test):
+        return self.known.get(self.key(build, test), {}).get("state") == "passed"
+
+    def limit(self, build, test, environment):
+        """Seconds after which a fault has hung the test. Throws where the test does not pass without one."""
+        key = self.key(build, test)
+        with self.lock:
+            if not self.knows(build, test):
+                started = time.monotonic()
+                state, _ = run_test(build, test, environment())
+                self.known[key] = {"state": state, "seconds": round(time.monotonic() - started, 1)}
+        if self.known[key]["state"] != "passed":
+            raise RuntimeError(f"without any fault the test '{key}' is {self.known[key]['state']}")
+        return max(60.0, 10 * self.known[key]["seconds"])
+
+
+def judge(build, tests, environment, limits):
+    for test, limit in zip(tests, limits):
+        state, detail = run_test(build, test, environment, limit)
         if state != "passed":
-            return {"state": {"failed": "caught", "hung": "caught"}.get(state, state), "by": test[0], "case": detail}
+            caught = state in ("failed", "hung")
+            return {"state": "caught" if caught else state, "by": test[0], "case": "hung" if state == "hung" else detail}
     return {"state": "survived"}
 
 
 def shader_environment(work, fault):
-    overlay = work / "overlay"
+    """Of a process that takes the fault's file, none if there is no fault, and keeps its compiled kernels apart: faulty
+    ones do not push out good ones."""
+    mine = work / f"worker-{threading.current_thread().name.rpartition('_')[2]}"
+    overlay = mine / "overlay"
     shutil.rmtree(overlay, ignore_errors=True)
+    overlay.mkdir(parents=True)
     if fault is not None:
         (overlay / fault.file).parent.mkdir(parents=True)
         (overlay / fault.file).write_text(fault.planted())
-    # Caches of its own: faulty kernels do not push out good ones.
-    return dict(os.environ, HELIOGRAPH_SHADER_DIR=str(overlay), XDG_CACHE_HOME=str(work / "cache"),
-                MESA_SHADER_CACHE_DIR=str(work / "mesa"))
+    return dict(os.environ, HELIOGRAPH_SHADER_DIR=str(overlay), XDG_CACHE_HOME=str(mine / "cache"),
+                MESA_SHADER_CACHE_DIR=str(mine / "mesa"))
 
 
 class EngineCopy:
     """A copy of the tree, built once, in which one file at a time is faulty."""
 
     def __init__(self, build, work):
-        self.source, self.build = work / "tree", work / "build"
+        self.source, self.build = work / "tree", work / "engine"
         self.fresh = True
+        self.lock = threading.Lock()
 
     def prepare(self, targets):
         self.source.mkdir(parents=True, exist_ok=True)
@@ -139,21 +176,25 @@ class EngineCopy:
         return subprocess.run(["cmake", "--build", self.build, "-j2", "--target", *targets], capture_output=True,
                               text=True)
 
-    def run(self, fault, environment):
+    def run(self, fault, environment, clean):
         targets = sorted({test[0] for test in fault.tests})
-        if self.fresh:
-            self.prepare(targets)
-            self.fresh = False
-        path = self.source / fault.file
-        good = path.read_text()
-        path.write_text(fault.planted())
-        try:
-            made = self.make(targets)
-            if made.returncode != 0:
-                return {"state": "does not compile", "case": made.stdout[-300:]}
-            return judge(self.build, fault.tests, environment)
-        finally:
-            path.write_text(good)
+        with self.lock:
+            if self.fresh:
+                self.prepare(targets)
+                self.fresh = False
+            if not all(clean.knows(self.build, test) for test in fault.tests):
+                self.make(targets)
+            limits = [clean.limit(self.build, test, lambda: environment) for test in fault.tests]
+            path = self.source / fault.file
+            good = path.read_text()
+            path.write_text(fault.planted())
+            try:
+                made = self.make(targets)
+                if made.returncode != 0:
+                    return {"state": "does not compile", "case": made.stdout[-300:]}
+                return judge(self.build, fault.tests, environment, limits)
+            finally:
+                path.write_text(good)
 
 
 def read_explained(path):
@@ -166,6 +207,8 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", default="", help="regular expression of the faults' names")
     parser.add_argument("--sample", type=int, default=0, help="so many, evenly over the shader faults")
+    parser.add_argument("--jobs", type=int, default=1, help="faults in shaders to run side by side")
+    parser.add_argument("--anew", action="store_true", help="forget earlier results")
     parser.add_argument("--engine", action="store_true", help="also faults that need a build")
     parser.add_argument("--work", type=pathlib.Path, help="default BUILD/mutation")
     parser.add_argument("--report", type=pathlib.Path, help="Markdown")
@@ -191,7 +234,7 @@ def main():
     work = (arguments.work or build / "mutation").resolve()
     work.mkdir(parents=True, exist_ok=True)
     store = work / "results.json"
-    results = json.loads(store.read_text()) if store.exists() else {}
+    results = json.loads(store.read_text()) if store.exists() and not arguments.anew else {}
 
     chosen = [fault for fault in faults if re.search(arguments.only, fault.name)]
     if arguments.sample:
@@ -200,27 +243,33 @@ def main():
         chosen = [shaders[int(i * step)] for i in range(arguments.sample)]
     if not arguments.engine:
         chosen = [fault for fault in chosen if fault.is_shader()]
-    # A fault that a test finds says nothing where the test fails without it.
-    clean = results.setdefault("clean", {})
+    clean = CleanRuns(results)
     engine = EngineCopy(build, work)
-    for i, fault in enumerate(chosen):
-        if fault.name in results:
-            continue
-        if fault.is_shader():
-            for test in fault.tests:
-                key = " ".join(test)
-                if clean.get(key) != "passed":
-                    clean[key] = run_test(build, test, shader_environment(work, None))[0]
-                if clean[key] != "passed":
-                    sys.exit(f"without any fault the test '{key}' is {clean[key]}")
+    lock = threading.Lock()
+    waiting = [fault for fault in chosen if fault.name not in results]
+
+    def run_fault(fault):
         started = time.monotonic()
-        environment = shader_environment(work, fault if fault.is_shader() else None)
-        result = judge(build, fault.tests, environment) if fault.is_shader() else engine.run(fault, environment)
+        if fault.is_shader():
+            limits = [clean.limit(build, test, lambda: shader_environment(work, None)) for test in fault.tests]
+            result = judge(build, fault.tests, shader_environment(work, fault), limits)
+        else:
+            result = engine.run(fault, shader_environment(work, None), clean)
         result["seconds"] = round(time.monotonic() - started, 1)
-        results[fault.name] = result
-        store.with_suffix(".partial").write_text(json.dumps(results, indent=1))
-        store.with_suffix(".partial").replace(store)
-        print(f"{i + 1}/{len(chosen)} {result['state']:9} {result['seconds']:6.1f} s  {fault.name[:110]}", flush=True)
+        with lock:
+            results[fault.name] = result
+            store.with_suffix(".partial").write_text(json.dumps(results, indent=1))
+            store.with_suffix(".partial").replace(store)
+            done = sum(one.name in results for one in chosen)
+            print(f"{done}/{len(chosen)} {result['state']:9} {result['seconds']:6.1f} s  {fault.name[:110]}", flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        try:
+            for finished in concurrent.futures.as_completed([pool.submit(run_fault, fault) for fault in waiting]):
+                finished.result()
+        except RuntimeError as error:
+            pool.shutdown(cancel_futures=True)
+            sys.exit(str(error))
 
     run = [fault for fault in chosen if fault.name in results]
     caught = [fault for fault in run if results[fault.name]["state"] == "caught"]

@@ -1,12 +1,15 @@
-"""Renders a glTF file of bench_cycles_scenes with Blender Cycles, matched to what Heliograph draws.
+"""Renders a glTF file of bench_cycles_scenes or export_assets.py with Blender Cycles, matched to what Heliograph draws.
 
     blender --background --factory-startup --python render_cycles.py -- FILE.gltf OUT.exr SIZE SAMPLES SEED THREADS
+        [--environment LATLONG.exr] [--once]
 
 Box filter of one pixel, no clamping, denoising, adaptive sampling or light tree; caustics on, 1024 bounces. The last line
 printed, "cycles SECONDS", is the CPU time that SAMPLES samples took, start-up excluded: the tree and all
-tables stay from a first picture, and the time of one of 1 sample is taken off.
+tables stay from a first picture, and the time of one of 1 sample is taken off. With --once it draws the picture and
+nothing else, for measurements of the whole process.
 """
 
+import argparse
 import json
 import math
 import resource
@@ -19,20 +22,21 @@ from mathutils import Matrix
 
 def numbers(document, binary, index):
     accessor = document["accessors"][index]
-    parts = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
+    parts = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
     kind = {5126: "f", 5125: "I"}[accessor["componentType"]]
     start = document["bufferViews"][accessor["bufferView"]].get("byteOffset", 0)
     values = struct.unpack_from("<%d%s" % (accessor["count"] * parts, kind), binary, start)
     return [values[i : i + parts] for i in range(0, len(values), parts)]
 
 
-def make_material(description):
-    """A closure for what bench_cycles_scenes writes: diffuse, mirror, glass, rough metal, emission."""
+def make_material(description, images):
+    """A closure for what the exporters write: diffuse, mirror, glass, rough metal, emission."""
     material = bpy.data.materials.new("material")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
-    color = description["pbrMetallicRoughness"]["baseColorFactor"]
+    color = description["pbrMetallicRoughness"].get("baseColorFactor", [1, 1, 1, 1])
+    texture = description["pbrMetallicRoughness"].get("baseColorTexture")
     scattering = description.get("extras", {}).get("heliograph", {}).get("scattering")
     if scattering is None:
         node = nodes.new("ShaderNodeBsdfDiffuse")
@@ -46,6 +50,10 @@ def make_material(description):
         node.distribution = "GGX" if alpha > 0 else "SHARP"
         node.inputs["Roughness"].default_value = math.sqrt(alpha)
     node.inputs["Color"].default_value = color
+    if texture:
+        image = nodes.new("ShaderNodeTexImage")
+        image.image = images[texture["index"]]
+        links.new(image.outputs["Color"], node.inputs["Color"])
     surface = node.outputs[0]
     emission = description.get("emissiveFactor")
     if emission:
@@ -64,15 +72,39 @@ def make_material(description):
     return material
 
 
-def make_scene(file):
+def make_world(environment):
+    world = bpy.data.worlds.new("world")
+    world.color = (0, 0, 0)
+    if environment:
+        world.use_nodes = True
+        nodes, links = world.node_tree.nodes, world.node_tree.links
+        nodes.clear()
+        image = nodes.new("ShaderNodeTexEnvironment")
+        image.image = bpy.data.images.load(environment)
+        # Blender's panoramas have Z up, Heliograph's Y.
+        apart, together = nodes.new("ShaderNodeSeparateXYZ"), nodes.new("ShaderNodeCombineXYZ")
+        links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], apart.inputs[0])
+        for here, there in enumerate((2, 0, 1)):
+            links.new(apart.outputs[there], together.inputs[here])
+        links.new(together.outputs[0], image.inputs["Vector"])
+        sky = nodes.new("ShaderNodeBackground")
+        links.new(image.outputs["Color"], sky.inputs["Color"])
+        links.new(sky.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
+    return world
+
+
+def make_scene(file, environment):
     document = json.load(open(file))
     binary = open(file.rsplit("/", 1)[0] + "/" + document["buffers"][0]["uri"], "rb").read()
-    materials = [make_material(m) for m in document["materials"]]
+    images = [bpy.data.images.load(file.rsplit("/", 1)[0] + "/" + document["images"][t["source"]]["uri"])
+              for t in document.get("textures", [])]
+    for image in images:
+        image.alpha_mode = "NONE"  # as glTF's opaque surfaces
+    materials = [make_material(m, images) for m in document["materials"]]
     scene = bpy.context.scene
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
-    scene.world = bpy.data.worlds.new("black")
-    scene.world.color = (0, 0, 0)
+    scene.world = make_world(environment)
     # Blender's Z is up, glTF's Y; but any frame will do, so that the file's is kept.
     for node in document["nodes"]:
         if "mesh" in node:
@@ -88,7 +120,16 @@ def make_scene(file):
                         polygon.use_smooth = True
                     mesh.use_auto_smooth = True
                     mesh.normals_split_custom_set_from_vertices(numbers(document, binary, attributes["NORMAL"]))
-                scene.collection.objects.link(bpy.data.objects.new("object", mesh))
+                if "TEXCOORD_0" in attributes:
+                    # glTF's v runs down the image, Blender's up.
+                    places = numbers(document, binary, attributes["TEXCOORD_0"])
+                    layer = mesh.uv_layers.new()
+                    for loop in mesh.loops:
+                        u, v = places[loop.vertex_index]
+                        layer.data[loop.index].uv = (u, 1 - v)
+                thing = bpy.data.objects.new("object", mesh)
+                thing.cycles.shadow_terminator_geometry_offset = thing.cycles.shadow_terminator_offset = 0
+                scene.collection.objects.link(thing)
         else:
             perspective = document["cameras"][node["camera"]]["perspective"]
             camera = bpy.data.cameras.new("camera")
@@ -144,14 +185,23 @@ def render(scene, samples, file=None):
 
 
 def main():
-    file, out, size, samples, seed, threads = sys.argv[sys.argv.index("--") + 1 :]
-    samples = int(samples)
-    scene = make_scene(file)
-    settings(scene, int(size), int(seed), int(threads))
+    parser = argparse.ArgumentParser()
+    parser.add_argument("file")
+    parser.add_argument("out")
+    for number in ("size", "samples", "seed", "threads"):
+        parser.add_argument(number, type=int)
+    parser.add_argument("--environment")
+    parser.add_argument("--once", action="store_true")
+    o = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
+    scene = make_scene(o.file, o.environment)
+    settings(scene, o.size, o.seed, o.threads)
+    if o.once:
+        render(scene, o.samples, o.out)
+        return
     render(scene, 1)
     one = render(scene, 1)
-    all_ = render(scene, samples, out)
-    print("cycles %.4f" % ((all_ - one) * samples / (samples - 1)))
+    all_ = render(scene, o.samples, o.out)
+    print("cycles %.4f" % ((all_ - one) * o.samples / (o.samples - 1)))
 
 
 main()
