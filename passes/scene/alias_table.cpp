@@ -7,11 +7,7 @@
 #include <numeric>
 
 namespace helio {
-namespace {
-
-/** Shares of 2^32 in proportion to the weights: rounded down, at least 1 where the weight is positive, and
- * what is left over goes to the largest. */
-std::vector<std::uint64_t> shares(std::span<const double> weights) {
+std::vector<std::uint64_t> wholeShares(std::span<const double> weights) {
     constexpr double whole = 4294967296.0;
     const std::size_t n = weights.size();
     const double largest = *std::max_element(weights.begin(), weights.end());
@@ -39,8 +35,6 @@ std::vector<std::uint64_t> shares(std::span<const double> weights) {
     return result;
 }
 
-}  // namespace
-
 std::uint32_t aliasBits(std::size_t entries) {
     return std::max(1u, std::uint32_t(std::bit_width(entries - 1)));
 }
@@ -49,7 +43,7 @@ AliasTable aliasTable(std::span<const double> weights) {
     assert(!weights.empty() && weights.size() <= (std::size_t(1) << 24));
     AliasTable table;
     table.bits = aliasBits(weights.size());
-    std::vector<std::uint64_t> share = shares(weights);
+    std::vector<std::uint64_t> share = wholeShares(weights);
     for (std::uint64_t s : share) table.chance.push_back(std::ldexp(double(s), -32));
     const std::size_t slots = std::size_t(1) << table.bits;
     const std::uint64_t capacity = std::uint64_t(1) << (32 - table.bits);

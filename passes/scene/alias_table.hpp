@@ -8,6 +8,10 @@
 
 namespace helio {
 
+/** Shares of 2^32 in proportion to the weights, which are finite and not negative: rounded down, at least 1
+ * where the weight is positive, and what is left over goes to the largest. All weights zero: equal shares. */
+std::vector<std::uint64_t> wholeShares(std::span<const double> weights);
+
 /** One slot: with f the bits below those that chose the slot, the slot's own entry is taken where f <
  * threshold, else `alias`. */
 struct AliasSlot {

@@ -36,8 +36,10 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
                   {"LIGHT_GRID_SCALE", info_.lightGridScale},
                   {"ENVIRONMENT_WIDTH", std::int32_t(info_.environmentSize[0])},
                   {"ENVIRONMENT_HEIGHT", std::int32_t(info_.environmentSize[1])},
-                  {"ENVIRONMENT_ROW_BITS", std::int32_t(info_.environmentBits[0])},
-                  {"ENVIRONMENT_COLUMN_BITS", std::int32_t(info_.environmentBits[1])},
+                  {"ENVIRONMENT_ROW_LEVELS", std::int32_t(info_.environmentLevels[0])},
+                  {"ENVIRONMENT_COLUMN_LEVELS", std::int32_t(info_.environmentLevels[1])},
+                  {"ENVIRONMENT_ROW_NODES", std::int32_t(info_.environmentNodes[0])},
+                  {"ENVIRONMENT_COLUMN_NODES", std::int32_t(info_.environmentNodes[1])},
                   {"ENVIRONMENT_ROTATED", info_.environmentRotated},
                   {"HAS_LINEAR_TEXTURES", info_.linearTextures},
                   {"ALBEDO_TABLES", std::int32_t(info_.albedoTables)},
@@ -105,8 +107,9 @@ SpecConstants DeviceScene::constants(const std::vector<std::string_view>& names)
 
 SpecConstants DeviceScene::environmentConstants() const {
     if (!hasEnvironmentImage()) return {};
-    return constants({"ENVIRONMENT_WIDTH", "ENVIRONMENT_HEIGHT", "ENVIRONMENT_ROW_BITS",
-                      "ENVIRONMENT_COLUMN_BITS", "ENVIRONMENT_ROTATED"});
+    return constants({"ENVIRONMENT_WIDTH", "ENVIRONMENT_HEIGHT", "ENVIRONMENT_ROW_LEVELS",
+                      "ENVIRONMENT_COLUMN_LEVELS", "ENVIRONMENT_ROW_NODES", "ENVIRONMENT_COLUMN_NODES",
+                      "ENVIRONMENT_ROTATED"});
 }
 
 SpecConstants DeviceScene::lightTableConstants() const {

@@ -1,4 +1,5 @@
 #include "passes/scene/alias_table.hpp"
+#include "passes/scene/inversion_tree.hpp"
 #include "passes/scene/packed_scene.hpp"
 
 #include <heliograph/error.hpp>
@@ -70,10 +71,6 @@ double poleDistance(double angle, bool top) {
     return s * s;
 }
 
-glm::vec4 fromBits(std::uint32_t x, std::uint32_t y, float z, float w) {
-    return {glm::uintBitsToFloat(x), glm::uintBitsToFloat(y), z, w};
-}
-
 }  // namespace
 
 void environment(const Scene& scene, const PackOptions& options, PackedScene& packed) {
@@ -115,9 +112,7 @@ void environment(const Scene& scene, const PackOptions& options, PackedScene& pa
     const double pi = glm::pi<double>();
     std::vector<double> rowWeight(h + 1), cells(w);
     std::vector<glm::vec2> rowGeometry(h + 1);
-    std::vector<AliasSlot> columns;
-    const std::uint32_t columnBits = aliasBits(w);
-    columns.reserve((std::size_t(h) + 1) << columnBits);
+    std::vector<std::array<std::uint32_t, 4>> columns;
     std::vector<glm::dvec2> turns(w);  // sine and cosine of the longitude of cells' middles
     for (std::uint32_t x = 0; x < w; ++x) {
         const double turn = 2.0 * pi * (0.5 - (x + 1.0) / w);
@@ -147,37 +142,36 @@ void environment(const Scene& scene, const PackOptions& options, PackedScene& pa
                     cells[x] * std::abs(from[axis]);
         }
         total += rowWeight[row];
-        const AliasTable table = aliasTable(cells);
-        columns.insert(columns.end(), table.slots.begin(), table.slots.end());
+        const InversionTree tree = inversionTree(wholeShares(cells));
+        columns.insert(columns.end(), tree.nodes.begin(), tree.nodes.end());
     }
     packed.environmentPower = total;
     if (!(total > 0.0)) {
         packed.environment = glm::vec3(0.0f);
         return;
     }
-    const AliasTable rows = aliasTable(rowWeight);
+    const InversionTree rows = inversionTree(wholeShares(rowWeight));
     packed.environmentSize = {w, h};
     if (options.diffuseEnvironment) packed.diffuseEnvironment = diffuseEnvironment(texels, w, h);
-    packed.environmentBits = {rows.bits, columnBits};
+    packed.environmentLevels = {rows.levels, inversionLevels(w)};
+    packed.environmentNodes = {std::uint32_t(rows.nodes.size()), std::uint32_t(columns.size() / (h + 1))};
 
     const glm::mat3 toMap(
         glm::mat3_cast(glm::inverse(glm::normalize(glm::dquat(scene.environment->rotation)))));
     packed.environmentRotated = toMap != glm::mat3(1.0f);
     std::vector<glm::vec4>& out = packed.environmentMap;
-    out.reserve(kEnvironmentHeader + texels.size() + rows.slots.size() + columns.size() / 2);
+    out.reserve(kEnvironmentHeader + texels.size() + h + 1 + rows.nodes.size() + columns.size());
     out.emplace_back(0.0f, glm::intBitsToFloat(-1), 0.0f, 0.0f);  // until it is in the light table
     for (glm::length_t r = 0; r < 3; ++r) out.emplace_back(toMap[0][r], toMap[1][r], toMap[2][r], 0.0f);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x)
             out.emplace_back(texels[std::size_t(y) * w + x], float(brightness(x, y) / total));
-    for (std::uint32_t i = 0; i < rows.slots.size(); ++i) {
-        const glm::vec2 g = i <= h ? rowGeometry[i] : glm::vec2(0.0f);
-        out.push_back(fromBits(rows.slots[i].threshold, rows.slots[i].alias, g.x, g.y));
-    }
-    for (std::size_t i = 0; i < columns.size(); i += 2)
-        out.emplace_back(glm::uintBitsToFloat(columns[i].threshold), glm::uintBitsToFloat(columns[i].alias),
-                         glm::uintBitsToFloat(columns[i + 1].threshold),
-                         glm::uintBitsToFloat(columns[i + 1].alias));
+    for (const glm::vec2& row : rowGeometry) out.emplace_back(row, 0.0f, 0.0f);
+    std::vector<std::array<std::uint32_t, 4>> nodes = rows.nodes;
+    nodes.insert(nodes.end(), columns.begin(), columns.end());
+    for (const std::array<std::uint32_t, 4>& node : nodes)
+        out.emplace_back(glm::uintBitsToFloat(node[0]), glm::uintBitsToFloat(node[1]),
+                         glm::uintBitsToFloat(node[2]), 0.0f);
 }
 
 }  // namespace helio::pack

@@ -125,7 +125,8 @@ struct PackedScene {
     /** Image of the surroundings with the tables that draw from it, empty where they are constant. */
     std::vector<glm::vec4> environmentMap;
     std::array<std::uint32_t, 2> environmentSize{0, 0};  ///< texels
-    std::array<std::uint32_t, 2> environmentBits{1, 1};  ///< of the tables over rows, and over a row's cells
+    /** Of the trees over rows, and over a row's cells. */
+    std::array<std::uint32_t, 2> environmentLevels{1, 1}, environmentNodes{1, 1};
     bool environmentRotated = false;
     /** What a white Lambertian surface reflects of the image, by its normal in the image's frame: at column i
      * and row j that of u = i / width, v = j / height, both poles included. Empty unless asked for. */

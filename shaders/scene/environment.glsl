@@ -17,18 +17,19 @@
 
 /**
  * Header (kEnvironmentHeader texels): chance of the light table to choose the environment, bits of its row there
- * (-1: none); rows of the rotation from
- * the world to the image. Then width x height texels: radiance RGB, density over solid angle. Then 2^ROW_BITS slots
- * of the alias table over rows of cells: bits of threshold, bits of alias, h of the row's upper boundary, extent of
- * the row in h (row = slot). Then of each row 2^COLUMN_BITS slots of the table over its cells, two a texel.
+ * (-1: none); rows of the rotation from the world to the image. Then width x height texels: radiance RGB, density over
+ * solid angle. Then of each row of cells, height + 1: h of its upper boundary, its extent in h. Then trees of
+ * passes/scene/inversion_tree.hpp, a node a texel: over the rows, and of each row over its cells.
  */
 layout(set = 0, binding = 32) uniform samplerBuffer uEnvironmentMap;
 const int ENVIRONMENT_HEADER = 4;
 layout(constant_id = 112) const int ENVIRONMENT_WIDTH = 1;
 layout(constant_id = 113) const int ENVIRONMENT_HEIGHT = 1;
-layout(constant_id = 114) const int ENVIRONMENT_ROW_BITS = 1;
-layout(constant_id = 115) const int ENVIRONMENT_COLUMN_BITS = 1;
+layout(constant_id = 114) const int ENVIRONMENT_ROW_LEVELS = 1;
+layout(constant_id = 115) const int ENVIRONMENT_COLUMN_LEVELS = 1;
 layout(constant_id = 116) const bool ENVIRONMENT_ROTATED = false;
+layout(constant_id = 133) const int ENVIRONMENT_ROW_NODES = 1;
+layout(constant_id = 134) const int ENVIRONMENT_COLUMN_NODES = 1;
 
 struct EnvironmentRadiance {
     vec3 radiance;
@@ -79,7 +80,7 @@ EnvironmentRadiance environmentAt(vec3 direction) {
     const float angle = realAsin(sqrt(h)) * (2.0 * INV_PI);
     const float y = (top ? angle : 1.0 - angle) * float(ENVIRONMENT_HEIGHT) + 0.5;
     const int row = clamp(int(y), 0, ENVIRONMENT_HEIGHT);
-    const vec2 boundary = texelFetch(uEnvironmentMap, environmentRow(row)).zw;
+    const vec2 boundary = texelFetch(uEnvironmentMap, environmentRow(row)).xy;
     const bool rowTop = row <= ENVIRONMENT_HEIGHT / 2;
     const float area = clamp(((rowTop == top ? h : 1.0 - h) - boundary.x) / boundary.y, 0.0, 1.0);
 
@@ -88,13 +89,44 @@ EnvironmentRadiance environmentAt(vec3 direction) {
     return environmentBlend(a, b, c, d, clamp(x - left, 0.0, 1.0), clamp(y - float(row), 0.0, 1.0), area);
 }
 
-/** One step of an alias table (passes/scene/alias_table.hpp): the entry, and uniform numbers that are left. */
-int aliasChoice(uint random, int slot, uint threshold, uint alias, int bits, out float rest) {
-    const uint capacity = 1u << (32 - bits);
-    const uint fraction = random & (capacity - 1u);
-    const bool own = fraction < threshold;
-    rest = float(own ? fraction : fraction - threshold) / float(max(own ? threshold : capacity - threshold, 1u));
-    return own ? slot : int(alias);
+/** Where a way down a tree is: its node and level's first texel, and the words, `low` to before `high`, that lead here. */
+struct InversionStep {
+    int level, node;
+    uint low, high;
+};
+
+void goDown(inout InversionStep at, uint word, int nodes) {
+    const uvec3 first = floatBitsToUint(texelFetch(uEnvironmentMap, at.level + at.node).xyz);
+    const bvec3 past = greaterThanEqual(uvec3(word), first);
+    at.low = past.z ? first.z : past.y ? first.y : past.x ? first.x : at.low;
+    at.high = !past.x ? first.x : !past.y ? first.y : !past.z ? first.z : at.high;
+    at.node = 4 * at.node + int(past.x) + int(past.y) + int(past.z);
+    at.level += nodes;
+}
+
+/** The entry of a tree at texel `root` that has a random word, and uniform numbers from what is left of it. `entries`
+ * and `levels` are constants: the driver leaves out the steps that are not there. */
+int inversion(int root, int entries, int levels, uint random, out float rest) {
+    const uint word = min(random, 0xfffffffeu);
+    InversionStep at = InversionStep(root, 0, 0u, 0xffffffffu);
+#define INVERSION_STEP(depth) \
+    if (levels > depth) goDown(at, word, ((entries - 1) >> (2 * (levels - depth))) + 1);
+    INVERSION_STEP(0)
+    INVERSION_STEP(1)
+    INVERSION_STEP(2)
+    INVERSION_STEP(3)
+    INVERSION_STEP(4)
+    INVERSION_STEP(5)
+    INVERSION_STEP(6)
+    INVERSION_STEP(7)
+    INVERSION_STEP(8)
+    INVERSION_STEP(9)
+    INVERSION_STEP(10)
+    INVERSION_STEP(11)
+    INVERSION_STEP(12)
+#undef INVERSION_STEP
+    rest = float(word - at.low) / float(max(at.high - at.low, 1u));
+    return at.node;
 }
 
 /** x in [0, 1] with density in proportion to a (1 - x) + b x, from a uniform number; in a form without
@@ -107,19 +139,12 @@ float sampleLinear(float u, float a, float b) {
 
 /** Draws a direction in proportion to brightness, from 2 x 32 random bits. */
 EnvironmentRadiance sampleEnvironment(uvec2 random, out vec3 direction) {
-    const int rowSlot = int(random.x >> (32 - ENVIRONMENT_ROW_BITS));
-    const vec4 rowEntry = texelFetch(uEnvironmentMap, environmentRow(rowSlot));
+    const int rows = ENVIRONMENT_HEIGHT + 1, tree = environmentRow(rows);
     vec2 rest;
-    const int row = aliasChoice(random.x, rowSlot, floatBitsToUint(rowEntry.x), floatBitsToUint(rowEntry.y),
-                                ENVIRONMENT_ROW_BITS, rest.x);
-    const vec2 boundary = texelFetch(uEnvironmentMap, environmentRow(row)).zw;
-
-    const int columnSlot = int(random.y >> (32 - ENVIRONMENT_COLUMN_BITS));
-    const int slots = environmentRow(1 << ENVIRONMENT_ROW_BITS) + (row << (ENVIRONMENT_COLUMN_BITS - 1));
-    const vec4 pair = texelFetch(uEnvironmentMap, slots + (columnSlot >> 1));
-    const vec2 columnEntry = (columnSlot & 1) == 0 ? pair.xy : pair.zw;
-    const int column = aliasChoice(random.y, columnSlot, floatBitsToUint(columnEntry.x), floatBitsToUint(columnEntry.y),
-                                   ENVIRONMENT_COLUMN_BITS, rest.y);
+    const int row = inversion(tree, rows, ENVIRONMENT_ROW_LEVELS, random.x, rest.x);
+    const vec2 boundary = texelFetch(uEnvironmentMap, environmentRow(row)).xy;
+    const int column = inversion(tree + ENVIRONMENT_ROW_NODES + row * ENVIRONMENT_COLUMN_NODES, ENVIRONMENT_WIDTH,
+                                 ENVIRONMENT_COLUMN_LEVELS, random.y, rest.y);
 
     vec4 a, b, c, d;
     environmentCorners(ivec2(column, row), a, b, c, d);

@@ -137,10 +137,10 @@ TEST(PathEnvironment, SunOfOneTexel) {
         for (std::size_t k = 0; k < 3; ++k) texels[(std::size_t(c.y) * 128 + c.x) * 4 + k] = 1e6f;
         const glm::dvec3 up = glm::normalize(glm::dvec3(0.1, 1.0, 0.3));
         const double truth =
-            integrate(image, 16,
+            integrate(image, 64,
                       [&](const glm::dvec3& d, double l) { return l * std::max(0.0, glm::dot(d, up)); }) /
             kPi;
-        const Traced traced = trace(receiver(glm::vec3(up), image).scene, options(16), 256);
+        const Traced traced = trace(receiver(glm::vec3(up), image).scene, options(16), 1024);
         expectMean(traced, truth, 0.01, fmt::format("sun at texel ({}, {})", c.x, c.y));
     }
 }

@@ -1,5 +1,6 @@
 // The flattened scene: order and ids, mirrored transforms, the light table, what is refused.
 #include "passes/scene/alias_table.hpp"
+#include "passes/scene/inversion_tree.hpp"
 #include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
 
@@ -283,6 +284,47 @@ TEST(PackScene, AliasTableGivesTheWeights) {
         for (std::size_t i = 0; i < n; ++i)
             ASSERT_NEAR(table.chance[i], weights[i] / total, std::ldexp(double(n) + 1, -32)) << i;
         ASSERT_GT(*std::ranges::min_element(table.chance), 0.0);
+    }
+}
+
+/** As shaders/scene/environment.glsl goes down: the entry of a word, and its first word and that of the next.
+ */
+std::array<std::uint64_t, 3> goDown(const InversionTree& tree, std::size_t entries, std::uint32_t word) {
+    std::uint64_t low = 0, high = 0xffffffffu;
+    std::size_t level = 0, node = 0;
+    for (std::uint32_t l = 0; l < tree.levels; ++l) {
+        const std::array<std::uint32_t, 4>& n = tree.nodes.at(level + node);
+        std::size_t child = 0;
+        while (child < 3 && word >= n[child]) ++child;
+        if (child > 0) low = n[child - 1];
+        if (child < 3) high = n[child];
+        level += ((entries - 1) >> 2 * (tree.levels - l)) + 1;
+        node = 4 * node + child;
+    }
+    EXPECT_EQ(level, tree.nodes.size());
+    return {node, low, high};
+}
+
+TEST(PackScene, InversionTreesKeepTheOrderOfWords) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform;
+    for (std::size_t n : {1u, 2u, 3u, 4u, 5u, 16u, 17u, 1000u, 4097u}) {
+        std::vector<double> weights(n);
+        for (double& w : weights) w = uniform(random) < 0.3 ? 0.0 : std::pow(uniform(random), 6);
+        weights[n / 2] = 1;
+        const std::vector<std::uint64_t> shares = wholeShares(weights);
+        const InversionTree tree = inversionTree(shares);
+        std::uint64_t first = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint64_t end = std::min<std::uint64_t>(first + shares[i], 0xffffffffu);
+            for (std::uint64_t word : {first, (first + end) / 2, std::max(first, end - 1)})
+                if (end > first) {
+                    ASSERT_EQ(goDown(tree, n, std::uint32_t(word)),
+                              (std::array<std::uint64_t, 3>{i, first, end}))
+                        << n;
+                }
+            first += shares[i];
+        }
     }
 }
 
