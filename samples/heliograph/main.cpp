@@ -26,7 +26,8 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
         const std::string& first = unknown.front();
         if (first.rfind('-', 0) == 0) return first + " is not known here";
         if (hasCommand) return fmt::format("there is no use for '{}' here", first);
-        return fmt::format("there is no command '{}'; there are render, compare, info, bench", first);
+        return fmt::format(
+            "there is no command '{}'; there are render, compare, info, bench, convert-environment", first);
     }
     return error.what();
 }
@@ -41,6 +42,7 @@ int runCommandLine(int argc, char** argv) {
     addCompareCommand(app, run);
     addInfoCommand(app, run);
     addBenchCommand(app, run);
+    addConvertEnvironmentCommand(app, run);
     try {
         app.parse(argc, argv);
         return run();

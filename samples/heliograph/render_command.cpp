@@ -4,6 +4,7 @@
 #include "output_files.hpp"
 #include "progress_display.hpp"
 
+#include <heliograph/environment.hpp>
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
 #include <heliograph/file.hpp>
@@ -29,7 +30,7 @@ struct RenderArguments {
     std::string scene;
     std::vector<std::string> outputs;
     std::string size = "1280x720";
-    std::string environment;
+    std::string environment, environmentMap;
     std::string stats, graph, errorMap;
     std::string device = "auto";
     std::string antialiasing;
@@ -301,6 +302,8 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     options.nextEventEstimation = !arguments.noNextEvent;
     if (!arguments.shutter.empty()) options.shutter = parseShutter(arguments.shutter);
     const bool image = !arguments.environment.empty() && !isRadiance(arguments.environment);
+    if (!arguments.environmentMap.empty() && !image)
+        throw CLI::ValidationError("--environment-map", "says what the image of --environment is; name one");
     if (!arguments.environment.empty() && !image) options.environment = parseRadiance(arguments.environment);
     checkPipelineOptions(command, options);
     if (!arguments.antialiasing.empty()) {
@@ -344,6 +347,10 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     if (image) {
         options.environment = Environment{.radiance = glm::vec3(1.0f), .image = int(scene.images.size())};
         scene.images.push_back(loadTextureImage(arguments.environment));
+        if (!arguments.environmentMap.empty() && arguments.environmentMap != "latlong")
+            scene.images.back() =
+                EnvironmentImage(scene.images.back(), *environmentMapping(arguments.environmentMap))
+                    .convert(EnvironmentMapping::LatLong);
     }
     DeviceOptions device;
     device.device = arguments.device;
@@ -436,6 +443,11 @@ void addRenderCommand(CLI::App& app, Command& run) {
                         "Name or index of the animation; default the first; none for the pose of the nodes");
     command->add_option("--environment", arguments->environment,
                         "R,G,B: constant radiance from everywhere; or a lat-long image file, +Y up");
+    command
+        ->add_option(
+            "--environment-map", arguments->environmentMap,
+            "What the environment's image is: latlong (default), cube, sphere; see convert-environment")
+        ->check(CLI::IsMember({"latlong", "cube", "sphere"}));
     command->add_option("--spp", options.samples, "Samples per pixel")
         ->check(CLI::Range(1u, (1u << 24) - 1))
         ->capture_default_str();

@@ -91,7 +91,14 @@ done
 expect 'raster takes --spp and --seed' 0 'left out samples' "$program" render sample:cornell --size 16x16 --pipeline raster --spp 64 --seed 3
 check 'raster says that its error is not measured' grep -q '^error    not measured' out.txt
 expect 'bad environment' 2 'R,G,B' "$program" render sample:cornell --environment 1,2
-expect 'missing environment' 1 'sky.exr' "$program" render sample:cornell --environment sky.exr
+render -o sky.exr
+expect 'lat-long to cube' 0 'wrote cube.exr, 16x96; mean radiance' "$program" convert-environment sky.exr -o cube.exr --to cube
+expect 'cube to ball' 0 'wrote ball.exr, 20x20' "$program" convert-environment cube.exr -o ball.exr --to sphere --size 20
+expect 'a cube as environment' 0 '' "$program" render sample:materials --size 8x8 --spp 1 --environment cube.exr --environment-map cube
+expect 'no cube' 1 'no six faces' "$program" convert-environment sky.exr -o x.exr --from cube --to latlong
+expect 'no such mapping' 2 'cubic' "$program" convert-environment sky.exr -o x.exr --to cubic
+expect 'mapping of no image' 2 'environment-map' "$program" render sample:cornell --environment 1,1,1 --environment-map cube
+expect 'missing environment' 1 'nosky.exr' "$program" render sample:cornell --environment nosky.exr
 expect 'missing file' 1 'nothere.gltf' "$program" render nothere.gltf
 expect 'unknown sample' 1 'cornell' "$program" render sample:nothere
 expect 'unknown file type' 1 'scene.xyz' "$program" render scene.xyz

@@ -2,6 +2,7 @@
 /** @file Everything public. */
 #include <heliograph/camera.hpp>
 #include <heliograph/device.hpp>
+#include <heliograph/environment.hpp>
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
 #include <heliograph/file.hpp>
