@@ -50,8 +50,7 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
         using namespace pack;
         const bool shines = (features & (kSpecularFeature | kModelFeatures)) != 0;
         skipIf(shines, "gloss of area lights",
-               "the raster pipeline shades gloss of punctual lights; surroundings "
-               "are reflected as their mean");
+               "the raster pipeline shades gloss of punctual lights and of surroundings");
         const bool through = m.scattering && (m.scattering->model == Scattering::Model::Dielectric ||
                                               m.scattering->model == Scattering::Model::ThinDielectric);
         skipIf((features & kTransmissionFeature) != 0 || through, "transmission",

@@ -80,11 +80,13 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bo
                             lightSamples_ > 0 ? lightSums(scene.info().surfaceLightChances, lightSamples_)
                                               : std::vector<std::uint32_t>{0})),
       environment_(makeBuffer(device, "shade.environment", surroundings(scene.info()))),
+      hasSpecularEnvironment_(shading == Shading::Material && needsSpecularEnvironment(scene)),
+      specularEnvironment_(makeSpecularEnvironment(device, scene, hasSpecularEnvironment_)),
       maxStorageBufferRange_(device.info().maxStorageBufferRange) {}
 
 void ShadePipeline::declareMips(Graph& graph) {
     mips_.declare(graph, scene_.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}),
-                  scene_.constants({"HAS_FLOAT_TEXTURES"}));
+                  scene_.constants({"HAS_FLOAT_TEXTURES", "HAS_LINEAR_TEXTURES"}));
 }
 
 RasterTriangles ShadePipeline::triangles(Graph& graph) {
@@ -96,18 +98,20 @@ RasterTriangles ShadePipeline::triangles(Graph& graph) {
 struct ShadePipeline::Common {
     Buffer slots, environment;
     SpecConstants spec, firstSpec;
-    std::vector<Binding> surroundings;  ///< the image behind the scene, where there is one
-    bool hasImage = false;
+    std::vector<Binding>
+        surroundings;  ///< the image behind the scene and what is glossy's of it, where needed
+    bool hasImage = false, hasSpecular = false;
     std::map<std::string, std::string> materials;  ///< definitions for more than diffuse surfaces
-    std::map<std::string, std::string> model;      ///< other definitions: Blinn and Phong's model, solid textures
-    std::uint32_t firstLight = 0;                  ///< of those that are taken one by one
-    std::vector<Binding> drawnLights;              ///< where lights are drawn
-    std::vector<Binding> corners;                  ///< where light is found for corners
+    std::map<std::string, std::string> model;  ///< other definitions: Blinn and Phong's model, solid textures
+    std::uint32_t firstLight = 0;              ///< of those that are taken one by one
+    std::vector<Binding> drawnLights;          ///< where lights are drawn
+    std::vector<Binding> corners;              ///< where light is found for corners
     /** A kernel for these materials; the one that shows the surroundings where there is an image of them. */
     Kernel kernel(const Kernel& plain, bool surroundingsToo = true) const {
         std::map<std::string, std::string> defines = materials;
         defines.insert(model.begin(), model.end());
         if (hasImage && surroundingsToo) defines["ENVIRONMENT_IMAGE"] = "1";
+        if (hasSpecular && surroundingsToo) defines["SPECULAR_ENVIRONMENT"] = "1";
         if (!drawnLights.empty() && surroundingsToo) defines["DRAWN_LIGHTS"] = "1";
         if (defines.empty()) return plain;
         return compileVariant(plain, {.defines = defines, .generated = {}});
@@ -198,6 +202,10 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
     common.firstSpec.merge(scene_.environmentConstants());
     common.hasImage = scene_.hasEnvironmentImage();
     if (common.hasImage) common.surroundings = scene_.bindings(graph, {"uEnvironmentMap"});
+    common.hasSpecular = hasSpecularEnvironment_;
+    if (common.hasSpecular)
+        common.surroundings.emplace_back("uSpecularEnvironment", graph.import(specularEnvironment_),
+                                         Format::RGBA32F);
     if (scene_.info().solidTextures) common.model["SOLID_TEXTURES"] = "1";
     if (shading_ != Shading::Material) common.model["BLINN_PHONG"] = "1";
     declareCorners(graph, std::move(view), common);

@@ -6,9 +6,10 @@
  *  - emissive surfaces in the light table, by Lambert's formula for polygons cut at the horizon: the exact
  *    irradiance of what nothing covers,
  *  - point, spot and directional lights with glTF's falloff, shadowed by maps where asked (passes/shadow),
- *  - a constant environment over the whole hemisphere,
+ *  - the environment over the whole hemisphere, diffuse and, by split sums, glossy,
  * plus the surface's own emission (front face, or both where double-sided). What is left out is in skipped().
  */
+#include "passes/environment/specular_environment.hpp"
 #include "passes/mip/mip_chain.hpp"
 #include "passes/raster/raster_pipeline.hpp"
 #include "passes/scene/device_scene.hpp"
@@ -106,6 +107,8 @@ private:
     std::uint32_t surfaceLights_, lightSamples_;  ///< 0 samples: lights are taken one by one
     DeviceBuffer lightSums_;
     DeviceBuffer environment_;
+    bool hasSpecularEnvironment_;
+    DeviceBuffer specularEnvironment_;
     std::uint64_t maxStorageBufferRange_;
 };
 

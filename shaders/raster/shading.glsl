@@ -9,6 +9,7 @@
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
 #include "shaders/texture/filters.glsl"
+layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constant radiance of the surroundings; PackedScene::diffuseEnvironment
 #ifdef SURFACE_MATERIALS
 #include "shaders/raster/material_light.glsl"
 #endif
@@ -25,7 +26,6 @@ layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first 
 #ifdef DRAWN_LIGHTS
 layout(set = 0, binding = 11) uniform usamplerBuffer uLightSums;     ///< powers of the lights before, LIGHT_SAMPLES strides in all
 #endif
-layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constant radiance of the surroundings; PackedScene::diffuseEnvironment
 
 /// A material's texture at `row` (3 or 5) over the pixel's footprint; white where there is none.
 vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
@@ -313,6 +313,8 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 vec3 reflectedAmbient(Shaded shaded) {
 #ifdef CORNERS
     return vec3(0.0);  // the corners' light has it
+#elif defined(SPECULAR_ENVIRONMENT) && !defined(BLINN_PHONG)
+    return surroundingsLight(shaded.bsdf, shaded.albedo, reflectedSurroundings(shaded.bsdf.frame[2]));
 #else
     return (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
 #endif
