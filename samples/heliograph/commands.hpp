@@ -15,6 +15,7 @@ void addRenderCommand(CLI::App& app, Command& run);
 void addCompareCommand(CLI::App& app, Command& run);
 void addInfoCommand(CLI::App& app, Command& run);
 void addBenchCommand(CLI::App& app, Command& run);
+void addBakeCommand(CLI::App& app, Command& run);
 void addConvertEnvironmentCommand(CLI::App& app, Command& run);
 
 }  // namespace helio::cli

@@ -27,7 +27,8 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
         if (first.rfind('-', 0) == 0) return first + " is not known here";
         if (hasCommand) return fmt::format("there is no use for '{}' here", first);
         return fmt::format(
-            "there is no command '{}'; there are render, compare, info, bench, convert-environment", first);
+            "there is no command '{}'; there are render, compare, info, bench, bake, convert-environment",
+            first);
     }
     return error.what();
 }
@@ -42,6 +43,7 @@ int runCommandLine(int argc, char** argv) {
     addCompareCommand(app, run);
     addInfoCommand(app, run);
     addBenchCommand(app, run);
+    addBakeCommand(app, run);
     addConvertEnvironmentCommand(app, run);
     try {
         app.parse(argc, argv);

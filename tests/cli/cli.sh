@@ -98,6 +98,9 @@ expect 'a cube as environment' 0 '' "$program" render sample:materials --size 8x
 expect 'no cube' 1 'no six faces' "$program" convert-environment sky.exr -o x.exr --from cube --to latlong
 expect 'no such mapping' 2 'cubic' "$program" convert-environment sky.exr -o x.exr --to cubic
 expect 'mapping of no image' 2 'environment-map' "$program" render sample:cornell --environment 1,1,1 --environment-map cube
+expect 'bake' 0 'wrote ao.png, 8x8 texels, 4 rays each; ambient occlusion' "$program" bake sample:carved --node floor -o ao.png --size 8 --spp 4
+expect 'bake without coordinates' 1 'no texture coordinates 0' "$program" bake sample:cornell -o ao.png
+expect 'bake of nothing' 1 "no node 'nobody'" "$program" bake sample:cornell --node nobody -o ao.png
 expect 'missing environment' 1 'nosky.exr' "$program" render sample:cornell --environment nosky.exr
 expect 'missing file' 1 'nothere.gltf' "$program" render nothere.gltf
 expect 'unknown sample' 1 'cornell' "$program" render sample:nothere

@@ -1,5 +1,6 @@
 #pragma once
 /** @file Everything public. */
+#include <heliograph/bake.hpp>
 #include <heliograph/camera.hpp>
 #include <heliograph/device.hpp>
 #include <heliograph/environment.hpp>

@@ -1,0 +1,152 @@
+/** @file Row X14: baked ambient occlusion against closed forms. */
+#include "tests/support/device.hpp"
+
+#include <heliograph/bake.hpp>
+#include <heliograph/error.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace helio::test {
+namespace {
+
+Primitive triangles(std::vector<glm::vec3> positions, std::vector<std::uint32_t> indices) {
+    Primitive p;
+    p.positions = std::move(positions);
+    p.indices = std::move(indices);
+    return p;
+}
+
+/** A rectangle from `corner` along two edges; its coordinates cover the image. */
+Primitive rectangle(glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
+    Primitive p = triangles({corner, corner + u, corner + u + v, corner + v}, {0, 1, 2, 0, 2, 3});
+    p.texcoords = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    return p;
+}
+
+/** The floor is the first node. */
+Scene sceneOf(std::vector<Primitive> primitives) {
+    Scene scene;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        scene.meshes.push_back({"", {std::move(primitives[i])}});
+        Node node;
+        node.name = fmt::format("node {}", i);
+        node.mesh = int(i);
+        scene.nodes.push_back(node);
+        scene.roots.push_back(int(i));
+    }
+    return scene;
+}
+
+ImageF bakeOf(const Scene& scene, std::uint32_t size, std::uint32_t samples, double distance = INFINITY) {
+    ImageF image =
+        bakeAmbientOcclusion(device(), scene, {.size = size, .samples = samples, .distance = distance});
+    EXPECT_EQ(image.width, size);
+    return image;
+}
+
+TEST(Bake, FloorBeforeALongWall) {
+    // Floor 0 <= x <= 2 facing +y, wall of height 1 at x = 0: half of (1 + d / sqrt(d^2 + h^2)) is open.
+    const Scene scene = sceneOf(
+        {rectangle({0, 0, 0.5f}, {2, 0, 0}, {0, 0, -1}), rectangle({0, 0, -200}, {0, 0, 400}, {0, 1, 0})});
+    constexpr std::uint32_t size = 16;
+    const ImageF image = bakeOf(scene, size, 1024);
+    double worst = 0;
+    for (std::uint32_t x = 0; x < size; ++x) {
+        const double d = 2 * (x + 0.5) / size, truth = 0.5 * (1 + d / std::sqrt(d * d + 1));
+        double mean = 0;
+        for (std::uint32_t y = 0; y < size; ++y) mean += double(image.at(x, y, 0)) / size;
+        worst = std::max(worst, std::abs(mean / truth - 1));
+    }
+    fmt::print("wall: largest relative error of 16 distances {:.2e}\n", worst);
+    EXPECT_LT(worst, 0.005);
+}
+
+TEST(Bake, UnderADisc) {
+    // A disc of radius R at height h hides R^2 / (R^2 + h^2) of the sky from below its middle.
+    constexpr int corners = 256;
+    for (const double radius : {0.5, 1.0, 3.0}) {
+        // As large as the circle.
+        const double reach =
+            radius * std::sqrt(2 * std::numbers::pi / corners / std::sin(2 * std::numbers::pi / corners));
+        std::vector<glm::vec3> positions{{0, 1, 0}};
+        std::vector<std::uint32_t> indices;
+        for (int i = 0; i < corners; ++i) {
+            const double turn = 2 * std::numbers::pi * i / corners;
+            positions.emplace_back(reach * std::cos(turn), 1, reach * std::sin(turn));
+            indices.insert(indices.end(), {0u, std::uint32_t(1 + i), std::uint32_t(1 + (i + 1) % corners)});
+        }
+        const Scene scene = sceneOf(
+            {rectangle({-0.005f, 0, 0.005f}, {0.01f, 0, 0}, {0, 0, -0.01f}), triangles(positions, indices)});
+        const ImageF image = bakeOf(scene, 8, 1024);
+        double mean = 0;
+        for (std::size_t i = 0; i < 64; ++i) mean += double(image.data[i * 3]) / 64;
+        const double truth = 1 - radius * radius / (radius * radius + 1);
+        fmt::print("disc of radius {}: {:.5f} for {:.5f}\n", radius, mean, truth);
+        EXPECT_NEAR(mean / truth, 1, 0.005);
+    }
+}
+
+TEST(Bake, UnderARectangle) {
+    // E / pi of a rectangle a x b at height 1 over the point below its corner (Howell's catalogue, B-3), four
+    // of them.
+    const double a = 1, b = 2;
+    const double A = a / std::sqrt(1 + a * a), B = b / std::sqrt(1 + b * b);
+    const double corner =
+        (A * std::atan(b / std::sqrt(1 + a * a)) + B * std::atan(a / std::sqrt(1 + b * b))) /
+        (2 * std::numbers::pi);
+    const Scene scene = sceneOf({rectangle({-0.005f, 0, 0.005f}, {0.01f, 0, 0}, {0, 0, -0.01f}),
+                                 rectangle({-1, 1, -2}, {2, 0, 0}, {0, 0, 4})});
+    const ImageF image = bakeOf(scene, 8, 1024);
+    double mean = 0;
+    for (std::size_t i = 0; i < 64; ++i) mean += double(image.data[i * 3]) / 64;
+    fmt::print("rectangle: {:.5f} for {:.5f}\n", mean, 1 - 4 * corner);
+    EXPECT_NEAR(mean / (1 - 4 * corner), 1, 0.005);
+    // Out of reach nothing hides.
+    const ImageF near = bakeOf(scene, 2, 64, 0.9);
+    EXPECT_EQ(near.at(0, 0, 0), 1.0f);
+}
+
+TEST(Bake, AFlatFloorOfManyTrianglesHidesNothingFromItself) {
+    Primitive grid;
+    constexpr std::uint32_t n = 9;
+    std::vector<glm::vec2> uv;
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+        const glm::vec2 t(float(i % n) / (n - 1), float(i / n) / (n - 1));
+        // A tilted plane far from the origin, whose corners are rounded.
+        grid.positions.emplace_back(100 + 3 * t.x, 50 + 0.7f * t.x - 0.3f * t.y, -70 - 2 * t.y);
+        uv.push_back(t);
+    }
+    grid.texcoords = {uv};
+    for (std::uint32_t y = 0; y + 1 < n; ++y)
+        for (std::uint32_t x = 0; x + 1 < n; ++x) {
+            const std::uint32_t i = y * n + x;
+            grid.indices.insert(grid.indices.end(), {i, i + 1, i + n + 1, i, i + n + 1, i + n});
+        }
+    const ImageF image = bakeOf(sceneOf({grid}), 32, 256);
+    for (const float value : image.data) ASSERT_EQ(value, 1.0f);
+}
+
+TEST(Bake, WhatItRefuses) {
+    Primitive twice = rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    twice.texcoords = {{{0, 0}, {1, 0}, {1, 1}, {0.5f, 0.0f}}};  // folded over
+    EXPECT_THROW(bakeOf(sceneOf({twice}), 16, 1), InputError);
+    Primitive outside = rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    outside.texcoords[0][1] = {2, 0};
+    EXPECT_THROW(bakeOf(sceneOf({outside}), 16, 1), InputError);
+    Primitive none = rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    none.texcoords.clear();
+    EXPECT_THROW(bakeOf(sceneOf({none}), 16, 1), InputError);
+    const Scene good = sceneOf({rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1})});
+    EXPECT_THROW((void)bakeAmbientOcclusion(device(), good, {.node = "nobody"}), InputError);
+    const ImageF stopped = bakeAmbientOcclusion(
+        device(), good, {.size = 4, .samples = 1, .progress = [](double) { return false; }});
+    EXPECT_TRUE(stopped.data.empty());
+}
+
+}  // namespace
+}  // namespace helio::test
