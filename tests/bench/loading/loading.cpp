@@ -1,17 +1,18 @@
 /**
  * @file
- * Loads one file, in a process of its own, and prints seconds and peak memory; or writes a file to load.
+ * Loads one file, in a process of its own, and prints seconds and peak memory, or with exit 1 what is wrong
+ * with it; or writes a file to load.
  *   bench_loading write KIND TRIANGLES FILE      KIND: glb, obj, ply, stl
  *   bench_loading heliograph FILE | assimp FILE
  * The mesh is a square grid with hills: vertices are shared by six triangles, except in STL.
  */
+#include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
@@ -101,13 +102,16 @@ void writeGlb(std::ofstream& out, const Grid& grid) {
     for (std::uint32_t i = 0; i < grid.triangles(); ++i) put(out, grid.triangle(i));
 }
 
+/** Of this program alone: rusage counts what it was before, a fork of a larger one. */
 double peakMebibytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return double(usage.ru_maxrss) / 1024;
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024;
+    }
+    return 0;
 }
 
-int load(const std::string& loader, const std::string& file) {
+int load(const std::string& loader, const std::string& file) try {
     const double before = peakMebibytes();
     const auto start = std::chrono::steady_clock::now();
     std::uint64_t triangles = 0, bytes = 0;
@@ -121,17 +125,25 @@ int load(const std::string& loader, const std::string& file) {
         }
         const double seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        for (const std::string& warning : scene.warnings) fmt::print(stderr, "{}\n", warning);
+        for (const auto& [what, why] : scene.skipped) fmt::print(stderr, "{}: {}\n", what, why);
         fmt::print("{} {:.3f} {:.1f} {:.1f}\n", triangles, seconds, peakMebibytes() - before,
                    double(bytes) / (1 << 20));
         return 0;
     }
     Assimp::Importer importer;
     const aiScene* const scene = importer.ReadFile(file, aiProcess_Triangulate);
-    if (scene == nullptr) return 1;
+    if (scene == nullptr) {
+        fmt::print(stderr, "{}\n", importer.GetErrorString());
+        return 1;
+    }
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) triangles += scene->mMeshes[i]->mNumFaces;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     fmt::print("{} {:.3f} {:.1f} 0\n", triangles, seconds, peakMebibytes() - before);
     return 0;
+} catch (const helio::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
 }
 
 }  // namespace
