@@ -13,6 +13,9 @@ namespace {
 constexpr double modelError = 0.01;  // of the estimate's logarithm, for edges and textures
 /** Of the logarithm of what the denominator's choice changes. */
 constexpr double denominatorDoubt = 0.02;
+/** See Truths: what rare samples say beyond is not believed. */
+constexpr double largestSkew = 4;
+constexpr double priorPixels = 256;  // of the skew
 /** Of what pixels' own terms say of the sum's variance over what their neighbours' say, where a pixel is like
  * those around it: 1 for normal errors, a third of the kurtosis of the halves' difference. Measured: 0.8
  * to 2.9 on scenes that the interval holds on, 2.8 to 5.8 where it is too low (the cellar), 4.5 to 10^5 where
@@ -27,7 +30,13 @@ double finiteOr(double x, double otherwise) {
 struct Truth {
     double squared = 0;  ///< for relMSE's denominator
     double own = 1;      ///< how much of it is the pixel's own value, not its neighbours'
-    double denominator() const { return squared + relMseRegularizer; }
+    double apart = 0;    ///< from the pixel's value to the mean of neighbours like it; 0 where there is none
+    double noise = 0;    ///< variance of the pixel's value, where it matters
+    /** `skew`: see skewOf(). */
+    double denominator(double skew) const {
+        const double d = squared + relMseRegularizer, r = own * noise / d;
+        return d * std::clamp((1 + 3 * own * r) / (1 + 2 * skew * r), 0.5, 1.5);
+    }
 };
 
 /** One channel of a film, and the variance of its pixels. */
@@ -81,16 +90,44 @@ public:
         const double signal = std::max({0.0, spread, apart});
         const double w = signal / (signal + own);
         const double steady = centre + (1 - w) * like;
-        // What is left of the pixel's own noise is in the numerator too: where light is skewed, both are
-        // large together, and the estimate would be low. Half the square is the least that is left.
-        const double squared = steady * steady;
-        return {std::max(squared - w * w * own, 0.5 * squared), w};
+        return {steady * steady, w, like, own};
     }
 
 private:
     const FilmImages& images_;
     std::size_t channel_;
     double gain_;
+};
+
+/** What a channel's pixels may be. */
+struct Truths {
+    std::vector<Truth> at;
+    /** E[e d^2] T / sigma^4 of errors e of a pixel's value T: 0 for normal errors, 1 for counts of equal
+     * bright samples, more where some are brighter. Where it is not 0, the numerator d^2 and a denominator
+     * that holds the same noise are large together, and their ratio is low. Measured where a pixel is like
+     * its neighbours, which say what it should be. */
+    double skew = 0;
+
+    Truths(const Channel& channel, const FilmImages& images) {
+        double third = 0, square = 0, pixels = 0;
+        for (std::uint32_t y = 0; y < images.height; ++y) {
+            for (std::uint32_t x = 0; x < images.width; ++x) {
+                const std::size_t pixel = at.size();
+                at.push_back(channel.truth(x, y));
+                const Truth& t = at.back();
+                if (t.apart == 0 || t.noise == 0) continue;
+                const double d = channel.difference(pixel), mean = channel.value(pixel) + t.apart;
+                const double weight =
+                    (1 - t.own) / ((t.squared + relMseRegularizer) * (t.squared + relMseRegularizer));
+                third -= weight * t.apart * d * d * mean;
+                square += weight * t.noise * t.noise;
+                pixels += 1 - t.own;
+            }
+        }
+        // Drawn towards that of counts, as if by some pixels more.
+        const double prior = square * priorPixels / std::max(1.0, pixels);
+        if (square > 0) skew = std::clamp((third + prior) / (square + prior), 0.0, largestSkew);
+    }
 };
 
 /** A pixel's part of the error. */
@@ -110,6 +147,7 @@ struct Terms {
     double squares = 0;     ///< 4/3 of the terms' squares, of pixels like their neighbours
     double neighbours = 0;  ///< 4 of their products with the neighbours' mean
     double ownSum = 0;      ///< with the pixel's own value in the denominator
+    double countsSum = 0;   ///< with a skew of 1, that of counts
     std::size_t count = 0;
 };
 
@@ -173,6 +211,8 @@ Terms halvesTerms(const FilmImages& images, double gain) {
     const std::array<Channel, 3> channels = {Channel(images, 0, gain), Channel(images, 1, gain),
                                              Channel(images, 2, gain)};
     const std::vector<float> variance = varianceOfMean(images);
+    const std::array<Truths, 3> truths = {Truths(channels[0], images), Truths(channels[1], images),
+                                          Truths(channels[2], images)};
     std::vector<Term> pixels(std::size_t(images.width) * images.height);
     Terms terms;
     for (std::uint32_t y = 0; y < images.height; ++y) {
@@ -185,12 +225,13 @@ Terms halvesTerms(const FilmImages& images, double gain) {
                 if (!std::isfinite(value) || !std::isfinite(d)) continue;
                 const double v = finiteOr(variance[4 * pixel + c], d * d);
                 if (d == 0 && v == 0) continue;
-                const Truth truth = channels[c].truth(x, y);
-                const double weight = 1 / (3 * truth.denominator());
+                const Truth& truth = truths[c].at[pixel];
+                const double weight = 1 / (3 * truth.denominator(truths[c].skew));
                 term.error[c] = d * std::sqrt(weight);
                 term.measured += d * d * weight;
                 term.smooth += v * weight;
                 term.own += truth.own / 3;
+                terms.countsSum += d * d / (3 * truth.denominator(1));
                 terms.ownSum += d * d / (3 * (value * value + relMseRegularizer));
             }
             terms.sum += term.measured;
@@ -243,7 +284,7 @@ std::vector<float> relativeWeights(const FilmImages& images) {
         for (std::uint32_t x = 0; x < images.width; ++x) {
             const std::size_t pixel = std::size_t(y) * images.width + x;
             for (std::size_t c = 0; c < 3; ++c) {
-                const double denominator = Channel(images, c, gain).truth(x, y).denominator();
+                const double denominator = Channel(images, c, gain).truth(x, y).denominator(1);
                 result[4 * pixel + c] = float(finiteOr(1 / denominator, 0));
             }
         }
@@ -272,11 +313,12 @@ ErrorEstimate estimateError(const FilmImages& images) {
     const double statistical = std::sqrt(terms.variance) / terms.sum;
     const double denominator = std::abs(std::log(terms.ownSum / terms.sum));
     // Errors are skewed upwards: what few samples saw is missed by the estimate and its spread alike. The
-    // quantiles are those that bench_error coverage measures; since the spread is an estimate too, their mean
-    // is a little above a normal variable's 1.96.
-    const double doubt = modelError + denominatorDoubt * denominator;
-    result.low = result.relmse * std::exp(-std::hypot(1.86 * statistical, doubt));
-    result.high = result.relmse * std::exp(std::hypot(2.2 * statistical, doubt));
+    // quantiles are those that bench_error coverage measures.
+    // The skew is measured on few pixels: all that it brings is within the interval.
+    const double skew = std::log(terms.sum / terms.countsSum);
+    const double doubt = std::hypot(modelError + denominatorDoubt * denominator, skew);
+    result.low = result.relmse * std::exp(-std::hypot(1.8 * statistical, doubt));
+    result.high = result.relmse * std::exp(std::hypot(2.12 * statistical, doubt));
     double fewest = HUGE_VAL;
     for (std::size_t i = 0; i < images.mean.size(); i += 4)
         fewest = std::min(fewest, double(images.mean[i + 3]));

@@ -72,12 +72,12 @@ TEST(ErrorLimit, EndsWithin20PercentOfTheLeastSamplesThatSuffice) {
         {"garden", {0.05, 0.01}}};
     for (const auto& [name, ofScene] : limits) {
         const Scene scene = errorScene(name);
-        SceneFilms films(device(), scene, {16, 16});
+        SceneFilms films(device(), scene, {24, 24});
         Renderer renderer(deviceOptions());
         for (const double limit : ofScene) {
             const std::uint32_t least = leastSamples(films, limit);
             RenderOptions options;
-            options.size = {16, 16};
+            options.size = {24, 24};
             options.samples = 4096;
             options.maxError = limit;
             const RenderResult result = renderer.render(scene, options);

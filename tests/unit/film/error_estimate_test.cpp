@@ -133,6 +133,23 @@ TEST(ErrorEstimate, ChannelsThatErrApartNarrowTheInterval) {
     EXPECT_GE(covered, 86u);
 }
 
+TEST(ErrorEstimate, SkewIsMadeUpForWhereAPixelIsLikeNoNeighbour) {
+    // A quarter is flat and tells how skewed errors are; elsewhere each pixel has its own value alone, whose
+    // noise the numerator shares.
+    const Truth truth = [](std::uint32_t x, std::uint32_t y) {
+        return x < 12 || (x + y) % 2 == 0 ? 1.0 : 0.2;
+    };
+    const Noise rare = [](Random& random, double mean) {
+        return 0.6 * mean + (std::uniform_real_distribution<>()(random) < 0.06 ? 0.4 * mean / 0.06 : 0);
+    };
+    double ratio = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const Synthetic s = synthesize(48, 64, truth, rare, seed);
+        ratio += estimateError(s.film).relmse / s.relmse / 60;
+    }
+    EXPECT_NEAR(ratio, 1, 0.06);
+}
+
 TEST(ErrorEstimate, NormalNoiseAtManySamplesIsReliable) {
     EXPECT_TRUE(estimateError(synthesize(48, 64, checkers, normalNoise, 1).film).reliable);
 }
