@@ -22,6 +22,8 @@ glm::dvec2 halfSides(const Shape& shape) {
         case Kind::Sphere:
         case Kind::Disc:
             return glm::dvec2(double(shape.radius));
+        case Kind::Torus:
+            return {double(shape.radius), double(shape.tubeRadius)};
         case Kind::Quad:
             return {0.5 * double(shape.width), 0.5 * double(shape.height)};
         case Kind::Plane:
@@ -61,6 +63,21 @@ Primitive tessellate(const Shape& shape, double reach) {
                 if (i > 0) to.indices.insert(to.indices.end(), {at, below, at + 1});
                 if (i + 1 < rows) to.indices.insert(to.indices.end(), {at + 1, below, below + 1});
             }
+    } else if (shape.kind == Kind::Torus) {
+        constexpr int rows = kSteps / 2;
+        for (int i = 0; i <= rows; ++i)
+            for (int k = 0; k <= kSteps; ++k) {
+                const double round = turn * (double(k % kSteps) / kSteps - 0.5);
+                const double tube = turn * (double(i % rows) / rows - 0.5);
+                const glm::dvec3 onRing(std::cos(round), std::sin(round), 0);
+                const glm::dvec3 n = std::cos(tube) * onRing + std::sin(tube) * forward;
+                add(half.x * onRing + half.y * n, n, {double(k) / kSteps, double(i) / rows});
+            }
+        for (int i = 0; i < rows; ++i)
+            for (int k = 0; k < kSteps; ++k) {
+                const auto at = std::uint32_t(i * (kSteps + 1) + k), above = at + kSteps + 1;
+                to.indices.insert(to.indices.end(), {at, at + 1, above, at + 1, above + 1, above});
+            }
     } else if (shape.kind == Kind::Disc) {
         const std::uint32_t middle = add(glm::dvec3(0.0), forward, glm::dvec2(0.5));
         for (int k = 0; k < kSteps; ++k) {
@@ -99,19 +116,22 @@ PlacedShape placeShape(const Scene& scene, const Instance& instance, const Shape
     if (!(a >= least && a <= most && b >= least && b <= most))
         refuse("scales its shape to a size that is 0 or not to be computed with",
                "give scales that are not 0 and sizes from 1e-15 to 1e15");
-    if (shape.kind == Kind::Sphere) {
+    const bool isRound = shape.kind == Kind::Sphere || shape.kind == Kind::Torus;
+    if (isRound) {
         constexpr double unlike = 1e-5;  // what products of float matrices leave
-        const glm::dvec3 z = half.x * linear[2];
-        const bool isEven = std::abs(b - a) <= unlike * a && std::abs(glm::length(z) - a) <= unlike * a &&
-                            std::abs(glm::dot(to.a, to.b)) <= unlike * a * a &&
-                            std::abs(glm::dot(to.a, z)) <= unlike * a * a &&
-                            std::abs(glm::dot(to.b, z)) <= unlike * a * a;
+        const double scale = a / half.x;
+        bool isEven = true;
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k <= i; ++k)
+                isEven = isEven && std::abs(glm::dot(linear[i], linear[k]) / (scale * scale) -
+                                            (i == k ? 1.0 : 0.0)) <= unlike;
         if (!isEven)
-            refuse("scales a sphere unevenly", "scale x, y and z alike, or give a mesh in its place");
+            refuse("scales a sphere or torus unevenly",
+                   "scale x, y and z alike, or give a mesh in its place");
     } else if (!(glm::length(glm::cross(to.a, to.b)) > 1e-6 * a * b)) {
         refuse("turns its flat shape into a line", "give axes that are not parallel");
     }
-    if (to.isMirrored) (shape.kind == Kind::Sphere ? to.a : to.b) *= -1.0;
+    if (to.isMirrored) (isRound ? to.a : to.b) *= -1.0;
     return to;
 }
 
@@ -124,6 +144,13 @@ Scene::Bounds shapeBounds(const PlacedShape& shape) {
         case Kind::Disc:
             reach = glm::sqrt(shape.a * shape.a + shape.b * shape.b);
             break;
+        case Kind::Torus: {
+            // A disc about its ring, and its tube beyond.
+            const double tube = glm::length(shape.b);
+            const glm::dvec3 across = shape.b * (glm::length(shape.a) / tube);
+            reach = glm::sqrt(shape.a * shape.a + across * across) + glm::dvec3(tube);
+            break;
+        }
         case Kind::Quad:
             reach = glm::abs(shape.a) + glm::abs(shape.b);
             break;
@@ -136,6 +163,7 @@ Scene::Bounds shapeBounds(const PlacedShape& shape) {
 std::array<glm::vec2, 3> shapeTexcoords(const PlacedShape& shape) {
     const float up = shape.isMirrored ? 1.0f : -1.0f;
     switch (shape.kind) {
+        case Kind::Torus:
         case Kind::Sphere:
             if (shape.isMirrored) return {{{1, 0}, {0, 0}, {1, 1}}};
             return {{{0, 0}, {1, 0}, {0, 1}}};
@@ -149,20 +177,21 @@ std::array<glm::vec2, 3> shapeTexcoords(const PlacedShape& shape) {
 }
 
 std::array<glm::vec2, 3> shapePoints(const Shape& shape, bool isMirrored) {
-    if (shape.kind == Kind::Sphere) return {};
+    if (shape.kind == Kind::Sphere || shape.kind == Kind::Torus) return {};
     const glm::vec2 half(halfSides(shape));
     return {{{0, 0}, {half.x, 0}, {0, isMirrored ? -half.y : half.y}}};
 }
 
 std::vector<glm::vec3> trianglesOn(const PlacedShape& shape, double reach) {
-    Shape unit{.kind = shape.kind, .radius = 1, .width = 2, .height = 2};
-    const Primitive triangles =
-        tessellate(unit, reach / std::max(glm::length(shape.a), glm::length(shape.b)));
-    const glm::dvec3 z = glm::cross(shape.a, shape.b) / glm::length(shape.a);
+    const double a = glm::length(shape.a), b = glm::length(shape.b);
+    const bool isTorus = shape.kind == Kind::Torus;
+    const Shape unit{.kind = shape.kind, .radius = 1, .tubeRadius = float(b / a), .width = 2, .height = 2};
+    const Primitive triangles = tessellate(unit, reach / std::max(a, b));
+    const glm::dvec3 y = isTorus ? shape.b * (a / b) : shape.b, z = glm::cross(shape.a, y) / a;
     std::vector<glm::vec3> corners;
     for (const std::uint32_t index : triangles.indices) {
         const glm::dvec3 p(triangles.positions[index]);
-        corners.emplace_back(shape.centre + p.x * shape.a + p.y * shape.b + p.z * z);
+        corners.emplace_back(shape.centre + p.x * shape.a + p.y * y + p.z * z);
     }
     return corners;
 }

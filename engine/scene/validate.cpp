@@ -224,6 +224,9 @@ private:
             refuse(place, fmt::format("has a shape and {} positions", vertices),
                    "give each a primitive of its own");
         number(place, "shape's radius", shape.radius, smallestShape, largestShape);
+        if (shape.kind == Shape::Kind::Torus)
+            number(place, "torus's tubeRadius", shape.tubeRadius, 0.01 * double(shape.radius),
+                   0.99 * double(shape.radius));
         number(place, "shape's width", shape.width, smallestShape, largestShape);
         number(place, "shape's height", shape.height, smallestShape, largestShape);
     }

@@ -41,7 +41,7 @@ void main() {
     int slot;
     closestSurface(origin, direction, -1, 0u, true, distance, slot);
     const bool hit = slot >= 0 && seen;
-    const SurfacePoint s = surfaceAt(origin, direction, max(slot, 0));
+    const SurfacePoint s = surfaceAt(origin, direction, -1, max(slot, 0));
     const int first = int(texelFetch(uInstanceFirst, s.triangle.instance).x);
     const float depth = dot(s.position - camera.origin.xyz, camera.forward.xyz);
     const vec3 albedo = baseColor(s.triangle.material, s.triangle.g, s.b).rgb;

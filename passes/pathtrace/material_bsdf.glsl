@@ -61,11 +61,14 @@ vec3 bentTowards(vec3 normal, vec3 w) {
 mat3 frontFrame(SurfacePoint s, vec3 normal) {
     mat3 frame = tangentFrame(s.triangle.g, s.b, normal);
 #ifdef SHAPES
-    if (HAS_TANGENTS && HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE) {
-        // Along the parallel, wherever that has a direction.
-        const vec3 across = cross(s.triangle.v2, normal);
+    if (HAS_TANGENTS && (HAS_SPHERES || HAS_TORI) && s.triangle.shape > 0 && !isFlat(s.triangle)) {
+        // Along the parallel, or round the axis, wherever that has a direction.
+        const bool isTorus = s.triangle.shape == SHAPE_TORUS;
+        const vec3 pole = isTorus ? cross(s.triangle.v1, s.triangle.v2) : s.triangle.v2;
+        const vec3 across = cross(pole, isTorus ? s.position - s.triangle.v0 : normal);
         const float handed = dot(cross(frame[0], frame[1]), normal) < 0.0 ? -1.0 : 1.0;
-        if (dot(across, across) > 1e-10 * dot(s.triangle.v2, s.triangle.v2)) frame[0] = handed * normalize(across);
+        if (isTorus || dot(across, across) > 1e-10 * dot(pole, pole)) frame[0] = handed * normalize(across);
+        frame[0] = normalize(frame[0] - dot(frame[0], normal) * normal);
         frame[1] = handed * cross(normal, frame[0]);
     }
 #endif

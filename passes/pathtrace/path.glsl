@@ -69,7 +69,7 @@ float largestOf(vec3 v) {
 bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth, vec3 environment,
              out ShadowRay shadow, out bool cut) {
     const bool hit = slot >= 0;
-    const SurfacePoint s = surfaceAt(path.origin, path.direction, max(slot, 0));
+    const SurfacePoint s = surfaceAt(path.origin, path.direction, path.source, max(slot, 0));
     if (hit) path.throughput *= throughMedium(s, path.direction, path.source, distance);
     if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, path.lightPlace, environment);
     if (HAS_EMISSION) {
@@ -85,6 +85,8 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
 #endif
             float sampled = cosine > 0.0 ? areaDensity * distance * distance / cosine : 0.0;
 #ifdef SHAPES
+            // Light sampling finds neither what has no end nor tori.
+            if (s.triangle.shape == SHAPE_PLANE || s.triangle.shape == SHAPE_TORUS) sampled = 0.0;
             if (HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE)
                 sampled = areaDensity * sphereDensity(path.origin, s.triangle.v0, length(s.triangle.v1), distance, cosine);
 #endif

@@ -81,7 +81,7 @@ struct PathTracer::Impl {
         spec.merge(SpecConstants(camera_.constants));
         if (scene_.info().hasShapes())
             spec.merge(
-                scene_.constants({"LISTED_SHAPES", "SHAPES_IN_TREE", "HAS_SPHERES", "HAS_FLAT_SHAPES"}));
+                scene_.constants({"LISTED_SHAPES", "SHAPES_IN_TREE", "HAS_SPHERES", "HAS_FLAT_SHAPES", "HAS_TORI"}));
         if (!materialDefines_.empty())
             spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES"}));
         return spec;

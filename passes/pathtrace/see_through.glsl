@@ -15,8 +15,8 @@
 const int MAX_LAYERS = 256;
 
 /** Where the ray goes on behind the triangle, and what the triangle stops of it. */
-float passTriangle(vec3 origin, vec3 direction, int slot, out vec3 beyond, out int g) {
-    const SurfacePoint s = surfaceAt(origin, direction, slot);
+float passTriangle(vec3 origin, vec3 direction, int source, int slot, out vec3 beyond, out int g) {
+    const SurfacePoint s = surfaceAt(origin, direction, source, slot);
     beyond = s.position - s.face * s.offset;
     g = s.triangle.g;
     return opacity(s.triangle.material, g, s.b);
@@ -29,15 +29,16 @@ int closestSurface(vec3 origin, vec3 direction, int source, uint key, const bool
 #ifdef SURFACE_MATERIALS
     if (HAS_ALPHA) {
         vec3 start = origin;
+        int from = source;
         float passed = 0.0;
         for (int layer = 0; layer < MAX_LAYERS && slot >= 0 && turns < MAX_TRAVERSAL_STEPS; ++layer) {
             vec3 beyond;
             int g;
-            const float stopped = passTriangle(start, direction, slot, beyond, g);
+            const float stopped = passTriangle(start, direction, from, slot, beyond, g);
             if (solid ? stopped > 0.0 : unitFloat(hashCombine(key, uint(g))) < stopped) break;
             passed += distance;
             start = beyond;
-            const int from = slot;
+            from = slot;
             turns += 1 + closestHit(start, direction, from, distance, slot);
         }
         distance += passed;
@@ -62,7 +63,7 @@ int shadowed(vec3 origin, vec3 direction, int source, ivec2 target, float limit,
             if (slot < 0 || distance >= left) break;
             vec3 beyond;
             int g;
-            const float stopped = passTriangle(start, direction, slot, beyond, g);
+            const float stopped = passTriangle(start, direction, from, slot, beyond, g);
             if (g >= target.x && g <= target.y) break;
             passes *= 1.0 - stopped;
             blocked = passes <= 0.0;

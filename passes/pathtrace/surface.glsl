@@ -24,9 +24,9 @@ struct SurfacePoint {
 
 /** The point of a shape that a ray meets, in `s`, whose triangle is the shape. `b` are such that attributes at a
  * triangle's corners give the shape's (shapeTexcoords in engine/scene/shape.hpp). */
-void shapePoint(vec3 origin, vec3 direction, inout SurfacePoint s) {
+void shapePoint(vec3 origin, vec3 direction, bool leaves, inout SurfacePoint s) {
     vec3 normal = vec3(0.0);
-    if (HAS_FLAT_SHAPES && s.triangle.shape != SHAPE_SPHERE) {
+    if (HAS_FLAT_SHAPES && isFlat(s.triangle)) {
         const vec2 at = flatCoordinates(shearOf(origin, direction), s.triangle);
         const vec3 a = s.triangle.v1 * at.x, b = s.triangle.v2 * at.y;
         s.b = vec3(1.0 - at.x - at.y, at);
@@ -44,14 +44,25 @@ void shapePoint(vec3 origin, vec3 direction, inout SurfacePoint s) {
         const vec2 uv = sphereCoordinates(normal, s.triangle.v1, s.triangle.v2);
         s.b = vec3(1.0 - uv.x - uv.y, uv);
     }
+    if (HAS_TORI && s.triangle.shape == SHAPE_TORUS) {
+        const TorusMeeting m = meetsTorus(origin, direction, s.triangle, leaves);
+        normal = m.normal;
+        s.position = s.triangle.v0 + m.point;
+        s.offset = OFFSET_ROUNDOFF * (0.3 * dot(abs(normal), abs(s.position)) + 0.6 * (length(s.triangle.v1) + length(s.triangle.v2)));
+        const vec3 x = normalize(s.triangle.v1), y = normalize(s.triangle.v2), z = cross(x, y);
+        const vec2 level = vec2(dot(m.point, x), dot(m.point, y));
+        const vec2 uv = 0.5 + INV_TWO_PI * vec2(realAtan2(level.y, level.x),
+                                                realAtan2(dot(normal, z), dot(normal, x * level.x + y * level.y) / length(level)));
+        s.b = vec3(1.0 - uv.x - uv.y, uv);
+    }
     s.front = dot(normal, direction) < 0.0;
     s.face = s.front ? normal : -normal;
     s.shading = s.face;
 }
 #endif
 
-/** The point of the triangle or shape in `slot` that a ray meets. */
-SurfacePoint surfaceAt(vec3 origin, vec3 direction, int slot) {
+/** The point of the triangle or shape in `slot` that a ray from `source` meets. */
+SurfacePoint surfaceAt(vec3 origin, vec3 direction, int source, int slot) {
     SurfacePoint s;
     s.triangle = fetchTriangle(slot);
     const vec3 v0 = s.triangle.v0, v1 = s.triangle.v1, v2 = s.triangle.v2;
@@ -68,7 +79,7 @@ SurfacePoint surfaceAt(vec3 origin, vec3 direction, int slot) {
     s.shading = s.front ? shading : -shading;
     s.offset = offsetDistance(v0, v1, v2, normal);
 #ifdef SHAPES
-    if (s.triangle.shape > 0) shapePoint(origin, direction, s);
+    if (s.triangle.shape > 0) shapePoint(origin, direction, source == slot, s);
 #endif
     return s;
 }
@@ -90,6 +101,12 @@ void surfaceEdges(SurfacePoint s, out vec3 e1, out vec3 e2) {
         // Downwards along the meridian: the normal times the parallel's direction.
         e2 = PI * (across > 0.0 ? cross(out_, e1 / -across) : length(out_) * z);
     }
+    if (HAS_TORI && s.triangle.shape == SHAPE_TORUS) {
+        const vec3 axis = flatNormal(s.triangle), normal = s.front ? s.face : -s.face;
+        const vec3 out_ = s.position - s.triangle.v0;
+        e1 = TWO_PI * cross(axis, out_);
+        e2 = TWO_PI * length(s.triangle.v2) * cross(normal, normalize(e1));
+    }
 #endif
 }
 
@@ -98,7 +115,12 @@ bool leftInwards(int slot, vec3 end, vec3 direction, float distance) {
     const Triangle t = fetchTriangle(slot);
     vec3 normal = cross(t.v1 - t.v0, t.v2 - t.v0);
 #ifdef SHAPES
-    if (t.shape > 0) normal = t.shape == SHAPE_SPHERE ? end - direction * distance - t.v0 : flatNormal(t);
+    if (t.shape > 0) normal = isFlat(t) ? flatNormal(t) : end - direction * distance - t.v0;
+    if (HAS_TORI && t.shape == SHAPE_TORUS) {
+        // From the ring to where the ray started.
+        const vec3 axis = flatNormal(t), level = normal - dot(normal, axis) * axis;
+        normal -= level * (length(t.v1) / max(length(level), 1e-30));
+    }
 #endif
     return dot(normal, direction) < 0.0;
 }

@@ -119,8 +119,8 @@ void add(Fingerprint& f, const Primitive& p) {
     f.value(material);
     f.value(shape.has_value());
     if (!shape) return;
-    const auto& [kind, radius, width, height] = *shape;
-    addAll(f, kind, radius, width, height);
+    const auto& [kind, radius, tubeRadius, width, height] = *shape;
+    addAll(f, kind, radius, tubeRadius, width, height);
 }
 
 void add(Fingerprint& f, const PunctualLight& light) {

@@ -48,6 +48,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
                   {"LISTED_SHAPES", std::int32_t(info_.listedShapes)},
                   {"SHAPES_IN_TREE", info_.shapesInTree},
                   {"HAS_SPHERES", info_.spheres},
+                  {"HAS_TORI", info_.tori},
                   {"HAS_FLAT_SHAPES", info_.flatShapes},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
     const auto upload = [&](std::string_view name, auto& values, Format view) {

@@ -81,7 +81,8 @@ void addShape(const Scene& scene, const Instance& instance, const Primitive& pri
                          "its shape is not finite in world space", "correct the node's transform");
     positions.insert(positions.end(), {centre, glm::vec3(shape.a), glm::vec3(shape.b)});
     const bool isSphere = shape.kind == Shape::Kind::Sphere;
-    (isSphere ? packed.spheres : packed.flatShapes) = true;
+    const bool isTorus = shape.kind == Shape::Kind::Torus;
+    (isSphere ? packed.spheres : isTorus ? packed.tori : packed.flatShapes) = true;
     if (any.normals)
         packed.normals.insert(packed.normals.end(), 3,
                               {unitOr(glm::cross(shape.a, shape.b), glm::dvec3(0, 0, 1)), 0.0f});
@@ -95,8 +96,8 @@ void addShape(const Scene& scene, const Instance& instance, const Primitive& pri
     if (packed.solidTextures) {
         for (const glm::vec2& point : shapePoints(*primitive.shape, shape.isMirrored))
             packed.solidPoints.emplace_back(point, 0.0f, 0.0f);
-        if (isSphere && materialOf(scene, primitive).solid)
-            packed.skipped.emplace_back("solid textures of spheres",
+        if ((isSphere || isTorus) && materialOf(scene, primitive).solid)
+            packed.skipped.emplace_back("solid textures of round shapes",
                                         "they show that of their centre; give a mesh");
     }
 }

@@ -65,7 +65,7 @@ bool makesParallelogram(const glm::vec3* a, const glm::vec3* b, Candidate& light
     return false;
 }
 
-/** Place and area of a shape as a light; false for one without end, which only rays find. */
+/** Place and area of a shape as a light; false for one without end and for a torus, which rays alone find. */
 bool makesLight(const PlacedShape& shape, Candidate& light, double& area) {
     light.normal = glm::cross(shape.a, shape.b);
     area = 4.0 * glm::length(light.normal);
@@ -74,6 +74,7 @@ bool makesLight(const PlacedShape& shape, Candidate& light, double& area) {
     light.edge2 = 2.0 * shape.b;
     switch (shape.kind) {
         case Shape::Kind::Plane:
+        case Shape::Kind::Torus:
             return false;
         case Shape::Kind::Quad:
             light.kind = LightKind::Quad;

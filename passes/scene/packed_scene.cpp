@@ -97,17 +97,29 @@ Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uin
     return tree;
 }
 
-/** Shapes that no tree holds, ascending: all of few ones, those without end, and where another accelerator
- * than the tree is asked for all. */
+/** Shapes that no tree holds, ascending: all of few ones, those without end, tori, whose test is long, and
+ * where another accelerator than the tree is asked for all. */
 std::vector<std::uint32_t> listedShapes(std::span<const pack::Surface> surfaces, const PackOptions& options) {
-    std::vector<std::uint32_t> all, endless;
+    std::vector<std::uint32_t> all, never;
     for (std::uint32_t g = 0; g < surfaces.size(); ++g) {
         if (surfaces[g].shape == 0) continue;
         all.push_back(g);
-        if (surfaces[g].shape == 1 + std::uint32_t(Shape::Kind::Plane)) endless.push_back(g);
+        const auto kind = Shape::Kind(surfaces[g].shape - 1);
+        if (kind == Shape::Kind::Plane || kind == Shape::Kind::Torus) never.push_back(g);
     }
+    const auto turns = [](std::size_t shapes, std::size_t longTests) {
+        return shapes + longTests * (kTorusTurns - 1);
+    };
+    const auto tori = std::size_t(std::ranges::count_if(
+        surfaces, [](const pack::Surface& s) { return s.shape == 1 + std::uint32_t(Shape::Kind::Torus); }));
     const bool tree = options.tree && options.accelerator == AcceleratorKind::Bvh;
-    return tree && all.size() > kListedShapes ? endless : all;
+    if (turns(tree ? never.size() : all.size(), tori) > kListedTurns)
+        throw InputError(
+            "", "shapes",
+            fmt::format("{} tori, and {} shapes that are in no tree", tori, tree ? never.size() : all.size()),
+            "give at most 40 tori and 300 planes, meshes in place of others, and leave out the "
+            "accelerator");
+    return tree && all.size() > kListedShapes ? never : all;
 }
 
 /** Packs the accelerator over triangles, or boxes of shapes, given by corners; returns the triangle of every

@@ -33,6 +33,10 @@ inline constexpr std::uint32_t kWrittenOutTriangles = 64, kWrittenOutBesideTree 
 /** Shapes up to which all are tested one by one, beside any tree. */
 inline constexpr std::uint32_t kListedShapes = 16;
 
+/** Loop turns of a torus's test (TORUS_TURNS of shaders/shared/torus.glsl), and of all listed shapes of a ray
+ * at most: with those of the tree they stay below what lavapipe runs. */
+inline constexpr std::size_t kTorusTurns = 192, kListedTurns = 8000;
+
 /** How a light is sampled; the values are those of shaders/scene/lights.glsl. */
 enum class LightKind : std::uint32_t {
     Triangle,
@@ -136,8 +140,8 @@ struct PackedScene {
     std::uint32_t triangleCount = 0;                ///< with shapes
     std::uint32_t shapeCount = 0;
     std::uint32_t listedShapes = 0;  ///< shapes in the last slots, which are in no tree
-    bool shapesInTree = false, spheres = false, flatShapes = false;
-    bool hasShapes() const { return spheres || flatShapes; }
+    bool shapesInTree = false, spheres = false, flatShapes = false, tori = false;
+    bool hasShapes() const { return spheres || flatShapes || tori; }
     std::uint32_t lightCount = 0;
     std::uint32_t lightBits = 1;  ///< the light table has 2^lightBits rows, filler after the lights
     std::uint32_t nodeCount = 0;  ///< of the tree, holes of its blocks included

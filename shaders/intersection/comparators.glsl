@@ -21,7 +21,11 @@ layout(set = 0, binding = 21) uniform usamplerBuffer uNodes;
 layout(constant_id = 120) const int STACK_SIZE = 64;
 
 /** See traverse.glsl. */
+#ifdef SHAPES
+const int MAX_TRAVERSAL_STEPS = 8000;
+#else
 const int MAX_TRAVERSAL_STEPS = 16000;
+#endif
 
 uint wordAt(uint index) {
     const uvec4 texel = texelFetch(uNodes, int(index >> 2));

@@ -70,7 +70,7 @@ int closestHit(vec3 origin, vec3 direction, int source, out float distance, out 
     int turns = closestTriangle(origin, direction, source, distance, slot);
 #ifdef SHAPES
     if (LISTED_SHAPES > 0) closestListed(origin, direction, source, distance, slot);
-    turns += LISTED_SHAPES;
+    turns += LISTED_TURNS;
 #endif
     return turns;
 }
@@ -81,7 +81,7 @@ int occluded(vec3 origin, vec3 direction, int source, ivec2 target, float limit,
     int turns = triangleBlocks(origin, direction, source, target, limit, hit);
 #ifdef SHAPES
     if (LISTED_SHAPES > 0 && limit > 0.0) hit = hit || listedBlocks(origin, direction, source, target, limit);
-    turns += LISTED_SHAPES;
+    turns += LISTED_TURNS;
 #endif
     return turns;
 }

@@ -30,7 +30,11 @@ layout(constant_id = 120) const int STACK_SIZE = 24;
 
 /** Turns a ray may take before it is given up and counted: lavapipe runs 65,535 turns of all loops of an
  * invocation and then silently stops. */
+#ifdef SHAPES
+const int MAX_TRAVERSAL_STEPS = 8000;  // listed shapes take as many
+#else
 const int MAX_TRAVERSAL_STEPS = 16000;
+#endif
 
 /** 1/x without infinities: a component below 1e-20 takes part in no box test that its rounding does not
  * decide, see above. */

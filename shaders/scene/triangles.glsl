@@ -74,8 +74,9 @@ Triangle fetchTriangle(int slot) {
     t.shape = t.material >> 28;
     t.material &= 0x0fffffff;
 #ifdef MOTION_KEYS
-    // Axes that turn are shorter between keys: a sphere keeps its size.
-    if (t.shape == 1) t.v1 *= movingLength(slot, 1) / length(t.v1);
+    // Axes that turn are shorter between keys: what is round keeps its size.
+    if (t.shape == 1 || t.shape == 5) t.v1 *= movingLength(slot, 1) / length(t.v1);
+    if (t.shape == 5) t.v2 *= movingLength(slot, 2) / length(t.v2);
 #endif
 #endif
     return t;

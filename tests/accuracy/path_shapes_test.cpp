@@ -10,8 +10,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <random>
 
@@ -156,6 +159,114 @@ TEST(PathShapes, SpheresAreMetAtTheirExactDistance) {
     }
 }
 
+/** Distance from a torus about Z whose ring has the radius 1. */
+double torusDistance(const glm::dvec3& p, double tube) {
+    return std::hypot(std::hypot(p.x, p.y) - 1, p.z) - tube;
+}
+
+/** The first meeting beyond 0, by steps as long as the distance: none is passed over. `closest`: least
+ * distance from the surface at which the ray turned away from it. Negative where there is none. */
+double marched(const glm::dvec3& o, const glm::dvec3& d, double tube, double& closest) {
+    const double side = torusDistance(o, tube) < 0 ? -1 : 1;
+    double t = 0, before = 1e9;
+    closest = 1e9;
+    for (int i = 0; i < 20000 && t < 12; ++i) {
+        const double distance = side * torusDistance(o + t * d, tube);
+        if (distance < 1e-11) return t;
+        if (before < distance) closest = std::min(closest, before);
+        before = distance;
+        t += std::max(distance, 1e-11);
+    }
+    return -1;
+}
+
+/** The same by the eigenvalues of the quartic's companion matrix, as numpy.roots does. */
+double byEigenvalues(const glm::dvec3& o, const glm::dvec3& d, double tube) {
+    const double od = glm::dot(o, d), q = glm::dot(o, o) + 1 - tube * tube;
+    const glm::dvec2 o2(o), d2(d);
+    const double c3 = 4 * od, c2 = 2 * q + 4 * od * od - 4 * glm::dot(d2, d2),
+                 c1 = 4 * od * q - 8 * glm::dot(o2, d2), c0 = q * q - 4 * glm::dot(o2, o2);
+    Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
+    companion.row(0) << -c3, -c2, -c1, -c0;
+    for (int i = 0; i < 3; ++i) companion(i + 1, i) = 1;
+    double first = -1;
+    for (const std::complex<double>& root : companion.eigenvalues())
+        if (std::abs(root.imag()) < 1e-7 && root.real() > 0 && (first < 0 || root.real() < first))
+            first = root.real();
+    return first;
+}
+
+TEST(PathShapes, NoRayMissesATorus) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
+    const auto direction = [&] {
+        for (;;) {
+            const glm::vec3 v(both(random), both(random), both(random));
+            const float squared = glm::dot(v, v);
+            if (squared > 1e-4f && squared < 1) return v / std::sqrt(squared);
+        }
+    };
+    constexpr std::size_t count = 1'000'000;
+    std::vector<glm::vec3> origins, directions;
+    std::vector<float> tubes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float tube = i % 3 == 0 ? 0.05f : (i % 3 == 1 ? 0.25f : 0.9f);
+        // From outside, from the hole and from within; towards somewhere near the tube.
+        origins.push_back((i % 5 == 0 ? 0.9f + tube : 4.0f) * unit(random) * direction());
+        const glm::vec3 ring = glm::normalize(
+            glm::vec3(both(random), both(random), 1e-3f) * glm::vec3(1, 1, 0) + glm::vec3(1e-6f, 0, 0));
+        const glm::vec3 towards = ring + 1.3f * tube * direction() - origins.back();
+        directions.push_back(glm::normalize(towards));
+        tubes.push_back(tube);
+    }
+    const auto got =
+        runOnDevice<float>("shaders/shared/torus.glsl",
+                           "TorusMeeting m = meetTorus(a, b, vec3(0.0), vec3(0.0, 0.0, 1.0), 1.0, c, 0.0); "
+                           "return m.meets ? m.distance : -1.0;",
+                           origins, directions, tubes);
+    std::vector<double> truths(count), turned(count);
+    tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+        truths[i] = marched(glm::dvec3(origins[i]), glm::normalize(glm::dvec3(directions[i])),
+                            double(tubes[i]), turned[i]);
+    });
+    std::size_t met = 0, grazing = 0, missed = 0, invented = 0, against = 0;
+    double worst = 0, worstRoots = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 d = glm::normalize(glm::dvec3(directions[i])), o(origins[i]);
+        const double tube = tubes[i], truth = truths[i];
+        const glm::dvec3 at = o + std::max(truth, 0.0) * d;
+        const glm::dvec3 ring = glm::normalize(glm::dvec3(at.x, at.y, 0));
+        const double cosine = truth < 0 ? 1 : std::abs(glm::dot(glm::normalize(at - ring), d));
+        // Within 2e-6 of touching, coordinates in floats do not say whether it does.
+        const bool touches = turned[i] < 2e-6 || cosine < 2e-3 * std::sqrt(1 / tube) ||
+                             std::abs(torusDistance(o, tube)) < 2e-6;
+        if (touches) {
+            ++grazing;
+            continue;
+        }
+        missed += truth >= 0 && got[i] < 0 ? 1 : 0;
+        invented += truth < 0 && got[i] >= 0 ? 1 : 0;
+        if (truth < 0 || got[i] < 0) continue;
+        ++met;
+        worst = std::max(worst, std::abs(double(got[i]) - truth) * std::min(1.0, cosine * 10));
+        if (i % 40 == 0) {
+            ++against;
+            worstRoots = std::max(worstRoots, std::abs(byEigenvalues(o, d, tube) - double(got[i])) *
+                                                  std::min(1.0, cosine * 10));
+        }
+    }
+    fmt::print(
+        "{} rays: {} met, {} missed, {} invented, {} too near to touching; worst error {:.2g}; of {} against "
+        "eigenvalues {:.2g}\n",
+        count, met, missed, invented, grazing, worst, against, worstRoots);
+    EXPECT_EQ(missed, 0u);
+    EXPECT_EQ(invented, 0u);
+    EXPECT_LT(worst, 1e-5);
+    EXPECT_LT(worstRoots, 1e-5);
+    EXPECT_GT(met, count / 2);
+    EXPECT_LT(grazing, count / 100);
+}
+
 TEST(PathShapes, IrradianceUnderEachKind) {
     const auto lit = [](const Shape& shape, const glm::vec3& at, const glm::quat& turn, double truth,
                         const char* what) {
@@ -220,15 +331,46 @@ Material glass() {
     return m;
 }
 
-/** Nothing is lost or gained in glass: the surroundings' 1 is seen everywhere. */
+/** Nothing is lost or gained in glass: the surroundings' 1 is seen everywhere, be they constant or an image.
+ */
 TEST(PathShapes, GlassInAWhiteFurnace) {
     SceneBuilder b;
     b.scene.materials.push_back(glass());
     add(b, sphere(1), {0, 0, 0}, int(b.scene.materials.size()) - 1);
+    add(b, {.kind = Shape::Kind::Torus, .radius = 1.5f, .tubeRadius = 0.3f}, {0, 0, 0},
+        int(b.scene.materials.size()) - 1);
+    TextureImage image;
+    image.width = 4;
+    image.height = 2;
+    image.texels = std::vector<float>(32, 1.0f);
+    b.scene.images.push_back(image);
+    b.scene.environment = Environment{glm::vec3(1.0f), 0};
+    b.camera({0, 0.5f, 4}, {0, 0, 0}, 0.8f);
+    for (const glm::dvec3& value : trace(b.scene, options(16), 64).mean) EXPECT_NEAR(value.y, 1.0, 1e-5);
+}
+
+/** What light sampling does not find shines as rays find it, though other surfaces of its material are
+ * sampled. */
+TEST(PathShapes, WhatIsFoundByRaysAloneShinesInFull) {
+    SceneBuilder b;
+    addReceiver(b, {-3, 0.5f, 0.4f});
+    const int one = b.material(glm::vec3(0.0f), glm::vec3(1.0f), true);
+    add(b, quad(1, 1), {0, 0, 0.5f}, one).rotation = kTurned;
+    add(b, {.kind = Shape::Kind::Plane}, {0, 0, 2}, one).rotation = kTurned;
+    add(b, {.kind = Shape::Kind::Torus, .radius = 0.8f, .tubeRadius = 0.1f}, {0, 0, 0.8f}, one);
+    expectMean(trace(b.scene, options(16, 1), 1024), 1.0, "under a quad, a torus and a plane", 0.005);
+}
+
+/** A torus that emits and reflects half is not closed to itself; all it sees of itself and of surroundings of
+ * 1 is 1. */
+TEST(PathShapes, TorusInAFurnaceOfItsOwnLight) {
+    SceneBuilder b;
+    const int half = b.material(glm::vec3(0.5f), glm::vec3(0.5f), true);
+    add(b, {.kind = Shape::Kind::Torus, .radius = 1, .tubeRadius = 0.45f}, {0, 0, 0}, half).rotation =
+        glm::quat(0.8f, 0.6f, 0, 0);
     b.scene.environment = Environment{glm::vec3(1.0f)};
-    b.camera({0, 0.5f, 3}, {0, 0, 0}, 0.6f);
-    const Traced image = trace(b.scene, options(16), 64);
-    for (const glm::dvec3& value : image.mean) EXPECT_NEAR(value.y, 1.0, 1e-5);
+    b.camera({0, 0.5f, 4}, {0, 0, 0}, 0.8f);
+    expectMean(trace(b.scene, options(16), 1024), 1.0, "torus", 0.001);
 }
 
 /** A ray along the axis of a ball lens of diameter 2 at the height h crosses a plane behind it at h (1 - d /

@@ -117,8 +117,11 @@ TEST_F(GltfExtras, NodesTakeShapes) {
         return scene.meshes.at(std::size_t(scene.nodes.back().mesh)).primitives.at(0);
     };
     using Kind = Shape::Kind;
-    const std::pair<const char*, Kind> kinds[] = {
-        {"sphere", Kind::Sphere}, {"plane", Kind::Plane}, {"disc", Kind::Disc}, {"quad", Kind::Quad}};
+    const std::pair<const char*, Kind> kinds[] = {{"sphere", Kind::Sphere},
+                                                  {"plane", Kind::Plane},
+                                                  {"disc", Kind::Disc},
+                                                  {"quad", Kind::Quad},
+                                                  {"torus", Kind::Torus}};
     std::vector<std::string> names;
     for (const auto& [name, kind] : kinds) {
         EXPECT_EQ(shapeOf(withShape({{"kind", name}})).shape, Shape{.kind = kind});
@@ -137,6 +140,7 @@ TEST_F(GltfExtras, NodesTakeShapes) {
     for (const json& bad :
          {json{{"kind", "cone"}}, json{{"radius", 1}}, json{{"kind", "quad"}, {"radius", 1}},
           json{{"kind", "sphere"}, {"width", 1}}, json{{"kind", "plane"}, {"height", 1}},
+          json{{"kind", "torus"}, {"tubeRadius", 1}}, json{{"kind", "disc"}, {"tubeRadius", 1}},
           json{{"kind", "sphere"}, {"radius", 0}}, json{{"kind", "disc"}, {"material", 2}}})
         EXPECT_THROW(withShape(bad), InputError) << bad.dump();
     GltfDocument both = GltfDocument::triangle();

@@ -164,16 +164,19 @@ struct MorphTarget {
 /** A surface that a formula gives, in the space of its mesh. Flat ones lie in the XY plane and face +Z; a
  * sphere has its poles on Y, with u = 1/2 + atan2(x, z) / 2 pi and v = acos(y) / pi. Texture coordinates of a
  * disc or quad run from 0 to 1 over the rectangle around it, u along X and v against Y; of a plane once a
- * unit. Nodes may place flat shapes in any way, and spheres with a scale that is the same along all axes. */
+ * unit; of a torus u = 1/2 + atan2(y, x) / 2 pi, and v runs likewise round the tube, 1/2 at its outermost.
+ * Nodes may place flat shapes in any way, and round ones with a scale that is the same along all axes. */
 struct Shape {
     enum class Kind : std::uint8_t {
         Sphere,
         Plane,  ///< without end
         Disc,
-        Quad
+        Quad,
+        Torus  ///< a tube round Z
     };
     Kind kind = Kind::Sphere;
-    float radius = 1;             ///< Sphere, Disc
+    float radius = 1;             ///< Sphere, Disc; of the Torus's circle through the middle of its tube
+    float tubeRadius = 0.25f;     ///< Torus: below `radius`
     float width = 1, height = 1;  ///< Quad, along X and Y
     bool operator==(const Shape&) const = default;
 };

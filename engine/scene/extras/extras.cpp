@@ -185,22 +185,32 @@ Meter meterOf(const std::string& file, const std::string& place, const json& fro
 Primitive shapeOf(const std::string& file, const std::string& place, const json& from,
                   std::size_t materials) {
     using Kind = Shape::Kind;
-    constexpr std::pair<const char*, Kind> shapes[] = {
-        {"sphere", Kind::Sphere}, {"plane", Kind::Plane}, {"disc", Kind::Disc}, {"quad", Kind::Quad}};
+    constexpr std::pair<const char*, Kind> shapes[] = {{"sphere", Kind::Sphere},
+                                                       {"plane", Kind::Plane},
+                                                       {"disc", Kind::Disc},
+                                                       {"quad", Kind::Quad},
+                                                       {"torus", Kind::Torus}};
     Primitive primitive;
     Shape& shape = primitive.shape.emplace();
     readName(from["kind"], shapes, shape.kind);
-    const bool isRound = shape.kind == Kind::Sphere || shape.kind == Kind::Disc;
+    const bool isRound = shape.kind != Kind::Plane && shape.kind != Kind::Quad;
     const auto belongs = [&](const char* member, bool has, const char* what) {
         if (from.contains(member) && !has)
             throw InputError(file, place + member, fmt::format("belongs to {}", what), "leave it out");
     };
-    belongs("radius", isRound, "a sphere or disc");
+    belongs("radius", isRound, "a sphere, disc or torus");
+    belongs("tubeRadius", shape.kind == Kind::Torus, "a torus");
     belongs("width", shape.kind == Kind::Quad, "a quad");
     belongs("height", shape.kind == Kind::Quad, "a quad");
     shape.radius = from.value("radius", shape.radius);
+    shape.tubeRadius = from.value("tubeRadius", shape.tubeRadius);
     shape.width = from.value("width", shape.width);
     shape.height = from.value("height", shape.height);
+    if (shape.kind == Kind::Torus &&
+        !(shape.tubeRadius >= 0.01f * shape.radius && shape.tubeRadius <= 0.99f * shape.radius))
+        throw InputError(file, place + "tubeRadius",
+                         fmt::format("is {} on a radius of {}", shape.tubeRadius, shape.radius),
+                         "give 0.01 to 0.99 of the radius");
     primitive.material = from.value("material", -1);
     if (primitive.material >= int(materials))
         throw InputError(file, place + "material", fmt::format("is {}", primitive.material),
