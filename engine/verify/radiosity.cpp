@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace helio::verify {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 Vector at(const Patch& p, double s, double t) {
     Vector x{};
@@ -62,7 +61,8 @@ Radiosity::Radiosity(std::span<const Patch> patches) {
                 for (std::size_t b = 0; b < 4; ++b)
                     sum += weights[a] * weights[b] *
                            irradiancePolygon(at(patches[i], nodes[a], nodes[b]), normal, corners);
-            factors_[i * n + k] = std::max(0.0, sum) / pi;  // patches in one plane: rounding alone
+            factors_[i * n + k] =
+                std::max(0.0, sum) / std::numbers::pi;  // patches in one plane: rounding alone
         }
     }
 }
