@@ -34,12 +34,12 @@ void main() {
     int i = int(gl_GlobalInvocationID.x);
     if (i >= int(push.count)) return;
     vec4 uv = texelFetch(uQueries, 2 * i), d = texelFetch(uQueries, 2 * i + 1);
-    results[i] = sampleFiltered(0, uv.xy, d.xy, d.zw);
+    results[i] = sampleFiltered(int(uv.z), uv.xy, d.xy, d.zw);
 }
 )";
 
 struct Query {
-    glm::vec2 uv{0.0f}, unused{0.0f}, dx{0.0f}, dy{0.0f};
+    glm::vec2 uv{0.0f}, texture{0.0f}, dx{0.0f}, dy{0.0f};
 };
 
 /** A texture of one channel (in all four), its values by texel. */
@@ -72,6 +72,37 @@ struct Sampled {
     double nanoseconds = 0;  ///< per sample, device time
 };
 
+Sampled sample(const Scene& scene, TextureFilter filter, const std::vector<Query>& queries) {
+    DeviceScene deviceScene(device(), scene, {.tree = false});
+    MipChains mips(device(), deviceScene.info().textures);
+    {
+        Graph graph(device());
+        mips.declare(graph, deviceScene.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}),
+                     deviceScene.constants({"HAS_FLOAT_TEXTURES"}));
+        Plan plan = graph.compile();
+        plan.wait(plan.execute());
+    }
+    static const Kernel kernel = compileKernel("test/filters", kKernel);
+    DeviceBuffer input = makeBuffer(device(), "queries", queries);
+    Graph graph(device());
+    const Buffer results = graph.buffer("results", {queries.size() * 16});
+    SpecConstants spec = deviceScene.constants({"HAS_FLOAT_TEXTURES"});
+    spec["TEXTURE_FILTER"] = std::int32_t(filter);
+    graph.compute("filter", kernel, {.spec = spec})
+        .reads(deviceScene.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}))
+        .reads(mips.bindings(graph))
+        .reads({{"uQueries", graph.import(input), Format::RGBA32F}})
+        .overwrites({{"uResults", results}})
+        .record([count = std::uint32_t(queries.size())](Commands& c) {
+            c.push(count).dispatchInvocations(count);
+        });
+    const auto read = graph.readback<glm::vec4>(results);
+    Plan plan = graph.compile({.executionsInFlight = 1});
+    plan.wait(plan.execute());  // compiles
+    const Execution done = plan.execute();
+    return {read.wait(done), plan.timings(done).at(0).milliseconds * 1e6 / double(queries.size())};
+}
+
 Sampled sample(const TestTexture& texture, TextureFilter filter, const std::vector<Query>& queries) {
     Scene scene;
     TextureImage image;
@@ -102,34 +133,7 @@ Sampled sample(const TestTexture& texture, TextureFilter filter, const std::vect
     scene.nodes = {node};
     scene.roots = {0};
 
-    DeviceScene deviceScene(device(), scene, {.tree = false});
-    MipChains mips(device(), deviceScene.info().textures);
-    {
-        Graph graph(device());
-        mips.declare(graph, deviceScene.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}),
-                     deviceScene.constants({"HAS_FLOAT_TEXTURES"}));
-        Plan plan = graph.compile();
-        plan.wait(plan.execute());
-    }
-    static const Kernel kernel = compileKernel("test/filters", kKernel);
-    DeviceBuffer input = makeBuffer(device(), "queries", queries);
-    Graph graph(device());
-    const Buffer results = graph.buffer("results", {queries.size() * 16});
-    SpecConstants spec = deviceScene.constants({"HAS_FLOAT_TEXTURES"});
-    spec["TEXTURE_FILTER"] = std::int32_t(filter);
-    graph.compute("filter", kernel, {.spec = spec})
-        .reads(deviceScene.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}))
-        .reads(mips.bindings(graph))
-        .reads({{"uQueries", graph.import(input), Format::RGBA32F}})
-        .overwrites({{"uResults", results}})
-        .record([count = std::uint32_t(queries.size())](Commands& c) {
-            c.push(count).dispatchInvocations(count);
-        });
-    const auto read = graph.readback<glm::vec4>(results);
-    Plan plan = graph.compile({.executionsInFlight = 1});
-    plan.wait(plan.execute());  // compiles
-    const Execution done = plan.execute();
-    return {read.wait(done), plan.timings(done).at(0).milliseconds * 1e6 / double(queries.size())};
+    return sample(scene, filter, queries);
 }
 
 const TextureFilter kAll[] = {TextureFilter::Nearest, TextureFilter::Bilinear,  TextureFilter::CatmullRom,
@@ -246,6 +250,63 @@ TEST(TextureFilter, OrderOfErrorOfTheBicubics) {
         std::printf("             %s: h^%.2f\n", kNames[int(filter)], slope);
         EXPECT_NEAR(slope, order, 0.15) << kNames[int(filter)];
     }
+}
+
+TEST(TextureFilter, AnyNumberOfTexturesOfAnySize) {
+    // 2,000 textures of as many sizes, one of them 16,384 texels long, without indexed descriptors: every
+    // corner texel, and the mean on the last level.
+    constexpr int count = 2000;
+    Scene scene;
+    Primitive triangle;
+    triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.texcoords = {{{0, 0}, {1, 0}, {0, 1}}};
+    triangle.indices = {0, 1, 2};
+    std::mt19937 random(11);
+    std::vector<Query> corners, whole;
+    std::vector<float> first;
+    std::vector<double> means;
+    for (int t = 0; t < count; ++t) {
+        TextureImage image;
+        image.width = t == 1234 ? 16384u : 1u + std::uint32_t(t) % 43;
+        image.height = t == 1234 ? 1u : 1u + std::uint32_t(t) / 43;
+        std::vector<float> texels;
+        double sum = 0;
+        for (std::uint32_t i = 0; i < image.width * image.height; ++i) {
+            texels.insert(texels.end(), 4, float(random() / 4294967296.0));
+            sum += double(texels.back());
+        }
+        means.push_back(sum / (image.width * image.height));
+        first.push_back(texels[texels.size() - 4]);
+        image.texels = std::move(texels);
+        const glm::vec2 last((image.width - 0.5f) / image.width, (image.height - 0.5f) / image.height);
+        corners.push_back({last, glm::vec2(float(t), 0.0f)});
+        whole.push_back({last, glm::vec2(float(t), 0.0f), {4.0f, 0.0f}, {0.0f, 4.0f}});
+        scene.images.push_back(std::move(image));
+        Texture use;
+        use.image = t;
+        scene.textures.push_back(use);
+        Material material;
+        material.emission = glm::vec3(1.0f);
+        material.emissiveTexture.texture = t;
+        scene.materials.push_back(material);
+        triangle.material = t;
+        scene.meshes.push_back({"", {triangle}});
+        Node node;
+        node.mesh = t;
+        scene.nodes.push_back(node);
+        scene.roots.push_back(t);
+    }
+    const std::vector<glm::vec4> texels = sample(scene, TextureFilter::Nearest, corners).values,
+                                 levels = sample(scene, TextureFilter::Trilinear, whole).values;
+    int wrong = 0;
+    double worst = 0;
+    for (std::size_t t = 0; t < count; ++t) {
+        wrong += texels[t].r != first[t];
+        worst = std::max(worst, std::abs(double(levels[t].r) / means[t] - 1));
+    }
+    std::printf("             2,000 textures: %d wrong texels, worst mean %.1e\n", wrong, worst);
+    EXPECT_EQ(wrong, 0);
+    EXPECT_LT(worst, 3e-6);
 }
 
 /** Mean of a texture (bilinear between its texels) over the parallelogram of a pixel. */
