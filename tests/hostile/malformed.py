@@ -122,6 +122,7 @@ def gltf_text_faults():
     case("trailing-comma", text[:-1] + b",}", "gltf")
     case("two-documents", text + text, "gltf")
     case("nan-token", text.replace(b'"yfov":0.8', b'"yfov":NaN'), "gltf")
+    case("number-of-2000000-digits", text.replace(b'"yfov":0.8', b'"yfov":' + b"1" * 2000000), "gltf")
     case("number-1e999", text.replace(b'"yfov":0.8', b'"yfov":1e999'), "gltf")
     case("control-character", text.replace(b"good_files.py", b"a\nb"), "gltf")
     case("many-values", b'{"asset":{"version":"2.0"},"nodes":[' + b"{}," * 400000 + b"{}]}", "gltf")
@@ -198,6 +199,19 @@ def gltf_accessors():
         for key in ("skins", "animations"):
             del document[key]
     gltf("unfolds-without-data", shared)
+    huge = {"componentType": 5126, "count": 16000000, "type": "VEC3"}
+    def sparse_zeros(document):
+        document["accessors"][sparse].update(count=16000000)
+        del document["accessors"][sparse]["bufferView"]
+    gltf("sparse-of-16000000", sparse_zeros)
+    def copies(document):
+        document["accessors"].append(huge)
+        document["nodes"][3]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {"TRANSLATION": len(document["accessors"]) - 1}
+    gltf("copies-without-data", copies)
+    def times(document):
+        document["accessors"].append(dict(huge, type="SCALAR"))
+        document["animations"][0]["samplers"][0]["input"] = len(document["accessors"]) - 1
+    gltf("times-without-data", times)
 
 
 def gltf_numbers():
@@ -370,6 +384,7 @@ def gltf_files():
 def gltf_others():
     gltf_at("required-unknown", ["extensionsRequired"], ["EXT_of_tomorrow"])
     gltf_at("required-draco", ["extensionsRequired"], ["KHR_draco_mesh_compression"])
+    gltf_at("required-escape-sequence", ["extensionsRequired"], ["\x1b[2J\nheliograph: error: fake"])
     gltf_at("required-text", ["extensionsRequired"], "EXT_of_tomorrow")
     gltf_at("asset-missing", ["asset"], {})
     gltf_at("version-1", ["asset", "version"], "1.0")
@@ -427,6 +442,7 @@ def obj_files():
     obj("cr-and-mark", b"\xef\xbb\xbf" + SQUARE.replace(b"\n", b"\r") + b"f 1 2 5\r")
     obj("utf16", (SQUARE + b"f 1 2 3\n").decode().encode("utf-16"))
     obj("many-libraries", SQUARE + b"".join(b"mtllib %x\n" % i for i in range(100000)) + b"f 1 2 3\n")
+    obj("long-number", SQUARE + b"v " + b"1" * 2000000 + b" 0 0\nf 1 2 3\n")
     obj("long-name", SQUARE + b"usemtl " + b"x" * 1000000 + b"\nf 1 2 3\n")
     obj("many-materials", SQUARE + b"".join(b"usemtl m%d\nf 1 2 3\n" % i for i in range(70000)))
     use = SQUARE + b"usemtl a\nf 1 2 3\n"
@@ -494,6 +510,7 @@ def ply_files():
     case("long-fan", b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
          b"property float z\nelement face 1\nproperty list uint uchar vertex_indices\nend_header\n" + b"\0" * 36 +
          struct.pack("<I", 6000000) + b"\0\1\2" * 2000000, "ply")
+    case("index-of-many-digits", text.replace(b"3 0 1 2", b"3 0 1 " + b"2" * 1000000), "ply", image__png=good.png())
     case("unknown-header-line", text.replace(b"element vertex", b"made by nobody\nelement vertex", 1), "ply", image__png=good.png())
     case("property-before-element", b"ply\nformat ascii 1.0\nproperty float x\nend_header\n", "ply")
     case("no-format", b"ply\nelement vertex 0\nproperty float x\nend_header\n", "ply")
