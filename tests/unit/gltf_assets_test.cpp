@@ -54,6 +54,7 @@ TEST_F(GltfAssets, Fox) {
     expectSound(scene);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.triangleCount(), 576u);
+    EXPECT_EQ(scene.meshes[0].primitives[0].positions.size(), 1728u);  // as in the file, which shares none
     EXPECT_EQ(scene.images.size(), 1u);
     EXPECT_TRUE(scene.skipped.empty());
     ASSERT_EQ(scene.skins.size(), 1u);

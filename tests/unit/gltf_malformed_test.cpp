@@ -255,6 +255,39 @@ TEST_F(Gltf, RefusesIndicesPastTheVertices) {
         << text;
 }
 
+TEST_F(Gltf, ReadsObjectsOfListsWhereverTheyLie) {
+    const std::string name(70000, 'x'), zeros(90000, 'A');  // too long for the parser's buffers
+    const std::string text = R"({"asset":{"version":"2.0"},"nodes":[{"name":"of a list that does not count"}],
+        "cameras":[],"nodes" : [{"name":")" +
+                             name + R"("}, {"extras":{"a":[{"b":[]}]},"children":[0],"name":"second"},
+        {"name":"\"]},{["}],"buffers":[{"uri":"data:;base64,)" +
+                             zeros + R"(","byteLength":67500}]})";
+    const Scene scene = helio::load(write("lists.gltf", text).string());
+    ASSERT_EQ(scene.nodes.size(), 3u);
+    EXPECT_EQ(scene.nodes[1].name, "second");
+    EXPECT_EQ(scene.nodes[1].children, std::vector<int>{0});
+    EXPECT_EQ(scene.nodes[2].name, "\"]},{[");
+    EXPECT_EQ(scene.roots, (std::vector<int>{1, 2}));
+}
+
+TEST_F(Gltf, RefusesListsOfOtherThanObjects) {
+    for (const char* other : {"1", "\"a\"", "null", "true", "0.5", "[]", "[{}]"}) {
+        const std::string list =
+            R"({"asset":{"version":"2.0"},"nodes":[{"name":"a"},)" + std::string(other) + "]}";
+        const std::string text = refusal(write("bad.gltf", list), other);
+        EXPECT_NE(text.find("nodes[1]: is no object"), std::string::npos) << text;
+    }
+}
+
+TEST_F(Gltf, TellsTheFirstOfManyFaults) {
+    json nodes = json::array();
+    for (int i = 0; i < 3000; ++i) nodes.push_back({{"mesh", i >= 700 ? 1 : 0}});
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["nodes"] = nodes;
+    const std::string text = refusal(write("bad.gltf", file.withInlineBuffer().dump()), "faults");
+    EXPECT_NE(text.find("nodes[700].mesh"), std::string::npos) << text;
+}
+
 TEST_F(Gltf, RefusesTextThatIsNoGltf) {
     const std::string deep(100000, '[');
     const std::pair<const char*, std::string> texts[] = {
