@@ -15,7 +15,7 @@ constexpr double modelError = 0.01;  // of the estimate's logarithm, for edges a
 constexpr double denominatorDoubt = 0.02;
 /** See Truths: what rare samples say beyond is not believed. */
 constexpr double largestSkew = 4;
-constexpr double priorPixels = 256;  // of the skew
+constexpr double skewPriorPixels = 256;  // of the skew
 /** Of what pixels' own terms say of the sum's variance over what their neighbours' say, where a pixel is like
  * those around it: 1 for normal errors, a third of the kurtosis of the halves' difference. Measured: 0.8
  * to 2.9 on scenes that the interval holds on, 2.8 to 5.8 where it is too low (the cellar), 4.5 to 10^5 where
@@ -125,7 +125,7 @@ struct Truths {
             }
         }
         // Drawn towards that of counts, as if by some pixels more.
-        const double prior = square * priorPixels / std::max(1.0, pixels);
+        const double prior = square * skewPriorPixels / std::max(1.0, pixels);
         if (square > 0) skew = std::clamp((third + prior) / (square + prior), 0.0, largestSkew);
     }
 };
