@@ -1,4 +1,6 @@
 // Sample patterns by name.
+#include "passes/temporal/temporal.hpp"
+
 #include <heliograph/error.hpp>
 #include <heliograph/renderer.hpp>
 
@@ -15,7 +17,8 @@ namespace {
 using Positions = std::vector<std::array<float, 2>>;
 
 constexpr const char* kNames =
-    "none, fxaa, msaa2, msaa4, msaa8, msaa16, or samples each shaded: ssaaN, gridN, jitterN (N x N), randomN";
+    "none, fxaa, taa, taau2, taau3, taau4, msaa2, msaa4, msaa8, msaa16, or samples each shaded: ssaaN, "
+    "gridN, jitterN (N x N), randomN";
 
 /** Vulkan's standard sample locations (Vulkan 1.3, 26.4), in sixteenths of a pixel. */
 Positions standardPositions(std::uint32_t count) {
@@ -89,6 +92,11 @@ Antialiasing antialiasing(std::string_view name, std::uint32_t seed) {
     if (const std::uint32_t n = number("msaa", 16)) {
         if (standardPositions(n).empty()) refuse(fmt::format("there is no '{}'", name));
         return {Kind::Multisampling, standardPositions(n)};
+    }
+    if (name == "taa") return {Kind::Temporal, temporalPositions(1)};
+    if (const std::uint32_t n = number("taau", 4)) {
+        if (n == 1) refuse("upscaling by 1 is 'taa'");
+        return {.kind = Kind::Temporal, .positions = temporalPositions(n), .temporal = {.upscale = n}};
     }
     if (const std::uint32_t n = number("ssaa", 4096)) return {Kind::Supersampling, lattice(n)};
     if (const std::uint32_t n = number("grid", 64)) return {Kind::Supersampling, cells(n, false, seed)};

@@ -74,7 +74,7 @@ PackOptions rasterPackOptions() {
 }
 
 RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterView& view,
-                             const RenderOptions& options)
+                             const RenderOptions& options, const TemporalStep& step)
     : size_(options.size),
       cull_(options.cullBackFaces),
       auxiliary_(options.auxiliary),
@@ -91,6 +91,11 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
              options.lightSamples, options.shading) {
     makeMips(device);
     makeShadows(device);
+    if (kind_ == Kind::Temporal) {
+        history_ = step.history;
+        makeTemporalPlan(device, step);
+        return;
+    }
     const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
     if (shade_.seesThrough() && kind_ != Kind::Multisampling) {
         makeLayers(device);
@@ -101,12 +106,14 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
     if (kind_ == Kind::Multisampling) makeMultisamplePlan(device);
 }
 
-bool RasterSession::fits(const RasterView& view, const RenderOptions& options) const {
-    return options.size == size_ && options.cullBackFaces == cull_ && options.auxiliary == auxiliary_ &&
-           options.antialiasing.kind == kind_ && options.antialiasing.positions.size() == sampleCount_ &&
-           options.textureFilter == filter_ && options.lightSamples == lightSamples_ &&
-           options.depthFormat == depth_ && options.shading == shading_ &&
-           options.shadows.kind == shadows_.kind && options.shadows.resolution == shadows_.resolution &&
+bool RasterSession::fits(const RasterView& view, const RenderOptions& options,
+                         const TemporalStep& step) const {
+    return options.size == size_ && step.history == history_ && options.cullBackFaces == cull_ &&
+           options.auxiliary == auxiliary_ && options.antialiasing.kind == kind_ &&
+           options.antialiasing.positions.size() == sampleCount_ && options.textureFilter == filter_ &&
+           options.lightSamples == lightSamples_ && options.depthFormat == depth_ &&
+           options.shading == shading_ && options.shadows.kind == shadows_.kind &&
+           options.shadows.resolution == shadows_.resolution &&
            options.shadows.filterRadius == shadows_.filterRadius &&
            options.shadows.lightSize == shadows_.lightSize && view.orthographic == view_->orthographic;
 }
@@ -173,6 +180,56 @@ void RasterSession::makeMultisamplePlan(Device& device) {
     counters_ = graph.readback<RasterCounters>(counters);
     samplePlan_ = graph.compile({.executionsInFlight = 1});
     samplePlan_.wait(samplePlan_.execute());
+}
+
+void RasterSession::makeTemporalPlan(Device& device, const TemporalStep& step) {
+    sampleViews_.push_back(std::make_shared<RasterView>(history_->frameView(*view_)));
+    if (shade_.seesThrough()) {
+        layerView_ = std::make_shared<RasterView>(*sampleViews_[0]);
+        layers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, layerView_);
+        layers_->draw();
+        if (auxiliary_) hitLayers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, view_);
+    } else if (auxiliary_) {
+        makeCentrePlan(device);
+    }
+    Graph graph(device);
+    const RasterTriangles triangles = shade_.triangles(graph);
+    // Where surfaces let light through, the nearest one says what moves.
+    const RasterOutput visible = raster_.declare(graph, triangles, sampleViews_[0]);
+    const Buffer color =
+        layers_ ? graph.import(layers_->color()) : shade_.declare(graph, visible, sampleViews_[0]).color;
+    const Buffer picture =
+        history_->declare(graph, {visible.visibility, color, triangles.buffer}, sampleViews_[0]);
+    sampleColor_ = graph.readback<float>(picture);
+    counters_ = graph.readback<RasterCounters>(visible.counters);
+    samplePlan_ = graph.compile({.executionsInFlight = 1});
+    // The driver compiles at the first dispatch; later frames would lose their history to it.
+    if (step.frame == 0) samplePlan_.wait(samplePlan_.execute());
+}
+
+bool RasterSession::drawFrame(const RasterView& view, RenderJob& job, const TemporalStep& step,
+                              std::vector<float>& color) {
+    const Antialiasing& how = job.options.antialiasing;
+    const std::array<float, 2>& position = how.positions[step.frame % how.positions.size()];
+    const RasterView centre = history_->frameView(view);
+    *sampleViews_[0] = shiftedView(centre, position);
+    if (step.frame == 0) {
+        work_ = {};
+        shaded_ = corners_ = 0;
+        drawn_ = {};
+        job.beginRendering();
+    }
+    history_->beginFrame(centre, position, how.temporal.blend, step.sceneChanged);
+    if (layers_) drawLayers(*sampleViews_[0], job);
+    const Execution done = samplePlan_.execute();
+    samplePlan_.wait(done);
+    job.addTimings(samplePlan_.timings(done));
+    addWork(counters_.wait(done).at(0));
+    if (!layers_) shaded_ += std::uint64_t(centre.width) * centre.height;
+    const bool goesOn = notifySample(job, step.frame + 1, step.frames);
+    if (goesOn && step.frame + 1 < step.frames) return false;
+    color = sampleColor_.wait(done);
+    return true;
 }
 
 void RasterSession::makeLayers(Device& device) {
@@ -279,17 +336,21 @@ void RasterSession::addWork(const RasterCounters& counters) {
 }
 
 RasterSession::Auxiliary RasterSession::auxiliary(const RasterView& view, RenderJob& job) {
-    const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
+    const bool sampled = kind_ != Kind::None && kind_ != Kind::Fxaa;
     Auxiliary hits;
     if (layers_) {
-        if (sampled) drawLayers(view, job);
+        if (hitLayers_)
+            hitLayers_->draw();
+        else if (sampled)
+            drawLayers(view, job);
+        AlphaLayers& layers = hitLayers_ ? *hitLayers_ : *layers_;
         const std::size_t pixels = std::size_t(size_[0]) * size_[1];
         hits.albedoDepth.resize(pixels * 4);
         hits.normal.resize(pixels * 4);
         hits.ids.resize(pixels * 2);
-        layers_->albedoDepth().download(hits.albedoDepth.data(), pixels * 16);
-        layers_->normal().download(hits.normal.data(), pixels * 16);
-        layers_->ids().download(hits.ids.data(), pixels * 8);
+        layers.albedoDepth().download(hits.albedoDepth.data(), pixels * 16);
+        layers.normal().download(hits.normal.data(), pixels * 16);
+        layers.ids().download(hits.ids.data(), pixels * 8);
         return hits;
     }
     const Execution centre = plan_.execute();
@@ -298,15 +359,14 @@ RasterSession::Auxiliary RasterSession::auxiliary(const RasterView& view, Render
     return hits;
 }
 
-void RasterSession::addAuxiliary(Frame& frame, const Auxiliary& hits) const {
+void RasterSession::addAuxiliary(Frame& frame, const Auxiliary& hits, std::uint32_t sampleCount) const {
     const auto& [albedoDepth, normal, ids] = hits;
     frame.add({"albedo.R", "albedo.G", "albedo.B"}, albedoDepth.data(), 4);
     frame.add({"normal.X", "normal.Y", "normal.Z"}, normal.data(), 4);
     frame.add({"depth.Z"}, albedoDepth.data(), 4, 3);
     const std::vector<float> id(ids.begin(), ids.end());
     frame.add({"id.instance", "id.triangle"}, id.data(), 2);
-    const std::vector<float> zero(ids.size() / 2, 0.0f),
-        samples(ids.size() / 2, float(std::max<std::size_t>(sampleCount_, 1)));
+    const std::vector<float> zero(ids.size() / 2, 0.0f), samples(ids.size() / 2, float(sampleCount));
     for (const char* name : {"variance.R", "variance.G", "variance.B"}) frame.add({name}, zero.data(), 1);
     frame.add({"samples"}, samples.data(), 1);
 }
@@ -329,23 +389,30 @@ void RasterSession::noteCounters(RenderResult& result) const {
     if (corners_ > 0) result.counters.emplace_back("corners_shaded", corners_);
 }
 
-void RasterSession::render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job) {
+void RasterSession::render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
+                           const TemporalStep& step) {
     *view_ = view;
-    const bool sampled = kind_ == Kind::Supersampling || kind_ == Kind::Multisampling;
-    job.graphviz = layers_ ? layers_->graphviz() : (sampled ? samplePlan_ : plan_).graphviz();
+    const bool sampled = kind_ != Kind::None && kind_ != Kind::Fxaa;
+    job.graphviz =
+        layers_ && kind_ != Kind::Temporal ? layers_->graphviz() : (sampled ? samplePlan_ : plan_).graphviz();
     RenderResult& result = job.result;
-    job.beginRendering();
     std::vector<float> color;
-    if (!picture(view, lens, job, color)) return job.finish();
+    if (kind_ == Kind::Temporal) {
+        if (!drawFrame(view, job, step, color)) return;
+    } else {
+        job.beginRendering();
+        if (!picture(view, lens, job, color)) return job.finish();
+    }
     Auxiliary hits;
     if (auxiliary_) hits = auxiliary(view, job);
     job.finish();
 
     Frame frame(size_[0], size_[1]);
     frame.add({"R", "G", "B"}, color.data(), 4);
-    if (auxiliary_) addAuxiliary(frame, hits);
+    result.samples =
+        kind_ == Kind::Temporal ? step.frame + 1 : std::uint32_t(std::max<std::size_t>(sampleCount_, 1));
+    if (auxiliary_) addAuxiliary(frame, hits, result.samples);
     result.image = frame.image();
-    result.samples = std::uint32_t(std::max<std::size_t>(sampleCount_, 1));
     result.nanCount = std::uint64_t(std::ranges::count_if(color, [](float x) { return x != x; }));
     if (result.nanCount > 0) {
         result.warnings.push_back(
@@ -366,6 +433,7 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
                                     "gridN, jitterN and randomN antialiasing; shown from its middle");
     }
     noteCounters(result);
+    if (kind_ == Kind::Temporal) return;  // the application has been told of every frame
     job.notify({.stage = "render",
                 .fraction = 1,
                 .samples = result.samples,
@@ -373,7 +441,8 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
                 .secondsLeft = 0});
 }
 
-void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job) {
+void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job,
+                  const TemporalStep& step) {
     if (view.camera.projection != Projection::Plane)
         throw InputError("", view.camera.name.empty() ? "camera" : fmt::format("camera {}", view.camera.name),
                          "is a panorama or a fisheye, which the raster pipeline cannot draw",
@@ -389,15 +458,15 @@ void renderRaster(Device& device, PreparedScene& scene, const View& view, Render
     RasterView rasterView = makeRasterView(view.transform, view.camera, job.options.size, nearest, farthest);
     if (conventional && view.camera.perspective)
         conventionalDepth(rasterView, std::isfinite(zfar) && zfar > 0 ? zfar : farthest);
-    if (!scene.raster || !scene.raster->fits(rasterView, job.options)) {
+    if (!scene.raster || !scene.raster->fits(rasterView, job.options, step)) {
         scene.raster.reset();
-        scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options);
+        scene.raster = std::make_unique<RasterSession>(device, scene, rasterView, job.options, step);
     }
-    if (!job.notify({.stage = "compile"})) return;
+    if (step.frame == 0 && !job.notify({.stage = "compile"})) return;
     if (view.camera.lensTable)
         job.result.skipped.emplace_back("lens table",
                                         "the raster pipeline shows a pinhole of the camera's field of view");
-    scene.raster->render(rasterView, hasLens(view.camera) ? view.camera.lens : std::nullopt, job);
+    scene.raster->render(rasterView, hasLens(view.camera) ? view.camera.lens : std::nullopt, job, step);
 }
 
 }  // namespace helio

@@ -7,6 +7,7 @@
 #include "passes/renderer/render_job.hpp"
 #include "passes/shade/alpha_layers.hpp"
 #include "passes/shade/shade.hpp"
+#include "passes/temporal/temporal.hpp"
 
 #include <heliograph/graph.hpp>
 
@@ -20,17 +21,27 @@ namespace helio {
 /** How a scene is packed for rasterization. */
 PackOptions rasterPackOptions();
 
+/** Which of several frames is drawn. */
+struct TemporalStep {
+    std::shared_ptr<TemporalHistory> history;  ///< none: a picture of its own
+    std::uint32_t frame = 0, frames = 1;
+    bool sceneChanged = false;  ///< since the last frame
+};
+
 /** The compiled plans of one scene, size, culling and antialiasing; the camera and the samples' positions may
  * differ from run to run. Must not outlive the scene. Not movable. */
 class RasterSession {
 public:
-    RasterSession(Device& device, PreparedScene& scene, const RasterView& view, const RenderOptions& options);
+    RasterSession(Device& device, PreparedScene& scene, const RasterView& view, const RenderOptions& options,
+                  const TemporalStep& step);
     RasterSession(const RasterSession&) = delete;
     RasterSession& operator=(const RasterSession&) = delete;
 
-    bool fits(const RasterView& view, const RenderOptions& options) const;
-    /** `lens`: where the camera has one; supersampling takes a point of it for every sample. */
-    void render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job);
+    bool fits(const RasterView& view, const RenderOptions& options, const TemporalStep& step) const;
+    /** `lens`: where the camera has one; supersampling takes a point of it for every sample. Of several
+     * frames the last (or that at which the application cancels) gives the picture. */
+    void render(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
+                const TemporalStep& step);
 
 private:
     using Kind = Antialiasing::Kind;
@@ -39,6 +50,10 @@ private:
     void makeCentrePlan(Device& device);
     void makeSupersamplePlan(Device& device);
     void makeMultisamplePlan(Device& device);
+    void makeTemporalPlan(Device& device, const TemporalStep& step);
+    /** Draws a frame; whether it is the last. */
+    bool drawFrame(const RasterView& view, RenderJob& job, const TemporalStep& step,
+                   std::vector<float>& color);
     /** Instead of the other plans but multisampling's, where surfaces let light through. */
     void makeLayers(Device& device);
     void drawLayers(const RasterView& view, RenderJob& job);
@@ -53,7 +68,7 @@ private:
         std::vector<std::int32_t> ids;
     };
     Auxiliary auxiliary(const RasterView& view, RenderJob& job);
-    void addAuxiliary(Frame& frame, const Auxiliary& hits) const;
+    void addAuxiliary(Frame& frame, const Auxiliary& hits, std::uint32_t sampleCount) const;
     void addWork(const RasterCounters& counters);
     void noteCounters(RenderResult& result) const;
 
@@ -83,13 +98,16 @@ private:
     Readback<std::uint32_t> shadings_;
     std::shared_ptr<RasterView> layerView_;
     std::unique_ptr<AlphaLayers> layers_;
-    AlphaLayers::Drawing drawn_;  ///< most layers and open pixels of this picture
+    std::shared_ptr<TemporalHistory> history_;
+    std::unique_ptr<AlphaLayers> hitLayers_;  ///< of the picture's pixels, where frames have fewer
+    AlphaLayers::Drawing drawn_;              ///< most layers and open pixels of this picture
     RasterCounters work_;
     std::uint64_t shaded_ = 0, corners_ = 0;
 };
 
 /** Rasterizes and shades; fills in the job's result. There is no Monte Carlo error: relMSE is 0, and not
  * reliable, since the aliasing of one sample is not measured. */
-void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job);
+void renderRaster(Device& device, PreparedScene& scene, const View& view, RenderJob& job,
+                  const TemporalStep& step = {});
 
 }  // namespace helio

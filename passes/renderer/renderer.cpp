@@ -26,15 +26,36 @@ void refuse(bool bad, const char* option, const std::string& fault, const char* 
 void checkAntialiasing(const Antialiasing& antialiasing) {
     using Kind = Antialiasing::Kind;
     const std::size_t count = antialiasing.positions.size();
-    const bool samples = antialiasing.kind == Kind::Supersampling || antialiasing.kind == Kind::Multisampling;
+    const bool samples = antialiasing.kind == Kind::Supersampling ||
+                         antialiasing.kind == Kind::Multisampling || antialiasing.kind == Kind::Temporal;
     refuse(samples != (count > 0), "antialiasing", fmt::format("{} positions of samples", count),
-           "give positions for supersampling and multisampling, and for nothing else");
+           "give positions for supersampling, multisampling and temporal antialiasing, and for nothing else");
     refuse(antialiasing.kind == Kind::Multisampling && count > 16, "antialiasing",
            fmt::format("multisampling with {} samples", count), "give at most 16");
     for (const auto& position : antialiasing.positions)
         for (const float c : position)
             refuse(!(c >= 0 && c <= 1), "antialiasing", fmt::format("a sample at {} of its pixel", c),
                    "give positions from 0 to 1");
+}
+
+void checkTemporal(const RenderOptions& options) {
+    if (options.antialiasing.kind != Antialiasing::Kind::Temporal) return;
+    const Antialiasing::Temporal& temporal = options.antialiasing.temporal;
+    refuse(options.pipeline != Pipeline::Raster, "antialiasing",
+           "frames are mixed by the raster pipeline only", "leave it out");
+    refuse(temporal.frames == 0 || temporal.frames > 65536, "antialiasing.temporal",
+           fmt::format("{} frames", temporal.frames), "give 1 to 65536");
+    refuse(!(temporal.frameSeconds >= 0 && temporal.frameSeconds <= 1e6), "antialiasing.temporal",
+           fmt::format("frames {} s apart", temporal.frameSeconds), "give a time of at least 0");
+    refuse(!(temporal.blend >= 1e-6 && temporal.blend <= 0.5), "antialiasing.temporal",
+           fmt::format("a blend of {}", temporal.blend), "give 1e-6 to 0.5");
+    refuse(temporal.upscale < 1 || temporal.upscale > 4 || options.size[0] % temporal.upscale != 0 ||
+               options.size[1] % temporal.upscale != 0,
+           "antialiasing.temporal",
+           fmt::format("{}x{} pixels upscaled by {}", options.size[0], options.size[1], temporal.upscale),
+           "give 1 to 4, and a size that is a multiple of it each way");
+    refuse(options.depthFormat != DepthFormat::Reversed, "antialiasing.temporal",
+           "surfaces are known again by their reversed depth", "leave the depth format out");
 }
 
 void check(const RenderOptions& options) {
@@ -56,6 +77,7 @@ void check(const RenderOptions& options) {
     refuse(options.motionSteps == 0 || options.motionSteps > 64, "motionSteps",
            fmt::format("{} steps", options.motionSteps), "give 1 to 64");
     checkAntialiasing(options.antialiasing);
+    checkTemporal(options);
     const Shadows& shadows = options.shadows;
     refuse(shadows.resolution != 0 && (shadows.resolution < 16 || shadows.resolution > 4096),
            "shadows.resolution", fmt::format("{} texels", shadows.resolution), "give 16 to 4096, or 0");
@@ -172,7 +194,13 @@ void RenderJob::addTimings(const std::vector<PassTiming>& timings) {
 struct Renderer::Impl {
     explicit Impl(const DeviceOptions& options) : device(options), scenes(device) {}
 
-    void run(const Scene& scene, const Motion& motion, RenderJob& job);
+    /** `frame`: of how many. */
+    void run(const Scene& scene, const Motion& motion, RenderJob& job, std::uint32_t frame = 0,
+             std::uint32_t frames = 1);
+    void runFrames(const Scene& scene, RenderJob& job);
+    /** What the frames before left, where there are several. */
+    TemporalStep temporalStep(const PreparedScene& prepared, bool moves, const RenderOptions& options,
+                              std::uint32_t frame, std::uint32_t frames);
     FilmTarget& film(const std::array<std::uint32_t, 2>& size) {
         if (!target || target->film().width() != size[0] || target->film().height() != size[1]) {
             target.reset();
@@ -184,12 +212,40 @@ struct Renderer::Impl {
     Device device;
     SceneCache scenes;
     std::unique_ptr<FilmTarget> target;
+    std::shared_ptr<TemporalHistory> temporal;
+    SceneIdentity lastFrame;
     std::string graphviz;
 };
 
-void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& job) {
+TemporalStep Renderer::Impl::temporalStep(const PreparedScene& prepared, bool moves,
+                                          const RenderOptions& options, std::uint32_t frame,
+                                          std::uint32_t frames) {
+    const std::uint32_t upscale = options.antialiasing.temporal.upscale,
+                        triangles = moves ? prepared.deviceScene.info().triangleCount : 0;
+    if (!temporal || !temporal->fits(options.size, upscale, triangles))
+        temporal = std::make_shared<TemporalHistory>(device, options.size, upscale, triangles);
+    if (frame == 0) temporal->restart();
+    const bool changed = frame > 0 && !(prepared.identity == lastFrame);
+    lastFrame = prepared.identity;
+    return {temporal, frame, frames, changed};
+}
+
+/** A render for each frame, the last at the options' time. */
+void Renderer::Impl::runFrames(const Scene& scene, RenderJob& job) {
+    const std::uint32_t frames = job.options.antialiasing.temporal.frames;
+    const double frameSeconds = job.options.antialiasing.temporal.frameSeconds;
+    for (std::uint32_t frame = 0; frame < frames && !job.result.cancelled; ++frame) {
+        RenderOptions options = job.options;
+        options.frameTime -= frameSeconds * (frames - 1 - frame);
+        const Motion motion = motionOf(scene, options);
+        run(motion.first ? *motion.first : scene, motion, job, frame, frames);
+    }
+}
+
+void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& job, std::uint32_t frame,
+                         std::uint32_t frames) {
     const RenderOptions& options = job.options;
-    if (!job.notify({.stage = "load"})) return;
+    if (frame == 0 && !job.notify({.stage = "load"})) return;
     View view = chooseView(scene, options.camera, double(options.size[0]) / options.size[1]);
     const std::optional<Environment> environment = chooseEnvironment(scene, options, job.result.warnings);
     // What ambient occlusion shows is no luminance, and no more is the light of a scene that has none.
@@ -226,14 +282,17 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
     }
     job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
     warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
-    if (!job.notify({.stage = "compile"})) return;
+    if (frame == 0 && !job.notify({.stage = "compile"})) return;
     if (path) {
         std::optional<PatchList> patches;
         if (options.integrator == Integrator::Radiosity)
             patches = patchesOf(scene, environment, pack, prepared, options.radiosityPatches);
         renderPaths(device, prepared, view, film(options.size), job, std::move(patches));
     } else {
-        renderRaster(device, prepared, view, job);
+        TemporalStep step;
+        if (options.antialiasing.kind == Antialiasing::Kind::Temporal)
+            step = temporalStep(prepared, motion.first.has_value(), options, frame, frames);
+        renderRaster(device, prepared, view, job, step);
     }
 }
 
@@ -268,7 +327,10 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     result.version = version();
     result.seed = options.seed;
     result.warnings = scene.warnings;
-    impl_->run(still ? *still : scene, motion, job);
+    if (options.antialiasing.kind == Antialiasing::Kind::Temporal)
+        impl_->runFrames(scene, job);
+    else
+        impl_->run(still ? *still : scene, motion, job);
     job.finish();
     if (result.image.data.empty()) result.image = blackImage(options.size);
     if (!job.graphviz.empty()) impl_->graphviz = job.graphviz;

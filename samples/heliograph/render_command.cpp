@@ -34,6 +34,8 @@ struct RenderArguments {
     std::string stats, graph, errorMap;
     std::string device = "auto";
     std::string antialiasing;
+    std::uint32_t frames = 32;
+    double frameRate = 60;
     std::string shutter;
     Display display;
     Normals normals = Normals::File;
@@ -169,7 +171,7 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
         for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter",
-                                   "--light-samples", "--depth", "--shading"}) {
+                                   "--light-samples", "--depth", "--shading", "--frames", "--frame-rate"}) {
             if (command.count(option) > 0) {
                 throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
@@ -312,6 +314,14 @@ int render(const CLI::App& command, RenderArguments& arguments) {
         } catch (const InputError& error) {
             throw CLI::ValidationError("--aa", error.what());
         }
+    }
+    if (options.antialiasing.kind == Antialiasing::Kind::Temporal) {
+        options.antialiasing.temporal.frames = arguments.frames;
+        options.antialiasing.temporal.frameSeconds = 1 / arguments.frameRate;
+    } else {
+        for (const char* option : {"--frames", "--frame-rate"})
+            if (command.count(option) > 0)
+                throw CLI::ValidationError(option, "is there for --aa taa and taauN, which mix frames");
     }
     for (const std::string& output : arguments.outputs) checkImageOutput("--output", output);
     if (!arguments.errorMap.empty()) checkImageOutput("--error-map", arguments.errorMap);
@@ -521,8 +531,17 @@ void addRenderCommand(CLI::App& app, Command& run) {
                     "none (default) or back: faces the raster pipeline leaves out");
     command->add_option(
         "--aa", arguments->antialiasing,
-        "Antialiasing of the raster pipeline: none (default), fxaa, msaa2, msaa4, msaa8, msaa16, or "
-        "each sample shaded: ssaaN, gridN, jitterN (N x N), randomN");
+        "Antialiasing of the raster pipeline: none (default), fxaa, msaa2, msaa4, msaa8, msaa16; "
+        "each sample shaded: ssaaN, gridN, jitterN (N x N), randomN; or a sample a frame, mixed over "
+        "--frames: taa, and taau2, taau3, taau4 from frames of 1/2, 1/3, 1/4 the size each way");
+    command
+        ->add_option("--frames", arguments->frames,
+                     "Frames that --aa taa draws; the picture is the last, at --frame-time")
+        ->check(CLI::Range(1u, 65536u))
+        ->capture_default_str();
+    command->add_option("--frame-rate", arguments->frameRate, "Of those frames, a second")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->capture_default_str();
     addChoice<TextureFilter>(
         command, "--texture-filter", options.textureFilter,
         {{"nearest", TextureFilter::Nearest},

@@ -88,6 +88,9 @@ for option in '--time 1' '--max-error 0.1' '--max-depth 2' '--filter tent' '--sa
     # shellcheck disable=SC2086
     expect "raster refuses $option" 2 "${option%% *}: is there for --pipeline path only" render --pipeline raster $option
 done
+expect 'frames are for mixing' 2 'frames: is there for --aa taa' "$program" render sample:cornell --pipeline raster --frames 4
+expect 'a size that frames do not fill' 1 '33x32 pixels upscaled by 2' "$program" render sample:cornell --pipeline raster --aa taau2 --size 33x32
+expect 'frames are mixed and upscaled' 0 'samples  5 per pixel, 16x16 pixels' "$program" render sample:cornell --pipeline raster --aa taau2 --frames 5 --frame-rate 30 --size 16x16
 expect 'raster takes --spp and --seed' 0 'left out samples' "$program" render sample:cornell --size 16x16 --pipeline raster --spp 64 --seed 3
 check 'raster says that its error is not measured' grep -q '^error    not measured' out.txt
 expect 'bad environment' 2 'R,G,B' "$program" render sample:cornell --environment 1,2

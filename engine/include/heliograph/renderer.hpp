@@ -54,15 +54,27 @@ struct Antialiasing {
         Supersampling,  ///< every sample is shaded
         Multisampling,  ///< coverage and depth per sample, one shading per pixel and triangle; up to 16
                         ///< samples
-        Fxaa            ///< a filter of the finished picture, after Lottes
+        Fxaa,           ///< a filter of the finished picture, after Lottes
+        Temporal        ///< a sample a frame, mixed into those of the frames before
     };
     Kind kind = Kind::None;
-    /** Of the samples within the pixel, from its upper left corner, 0 to 1. Equal weights. */
+    /** Of the samples within the pixel, from its upper left corner, 0 to 1. Equal weights. Temporal: those of
+     * the frames in turn. */
     std::vector<std::array<float, 2>> positions;
+    /** The frames of Kind::Temporal. */
+    struct Temporal {
+        std::uint32_t frames = 32;       ///< drawn, the last at RenderOptions::frameTime
+        double frameSeconds = 1.0 / 60;  ///< from one to the next
+        double blend = 0.1;  ///< weight of a new sample in the long run; the first 1/blend weigh the same
+        /** Pixels of the picture for one of a frame, each way, 1 to 4: a temporal upscaler. It is made by
+         * hand, nothing is learned: samples count where they lie, see passes/temporal. */
+        std::uint32_t upscale = 1;
+    };
+    Temporal temporal = {};
 };
-/** By name: none; fxaa; msaa2, msaa4, msaa8, msaa16 (Vulkan's standard positions); supersampling as ssaaN (N
- * points of an even sequence), gridN and jitterN (N x N, at the centres of its cells or anywhere in them),
- * randomN. The seed is that of jitterN and randomN. Throws InputError. */
+/** By name: none; fxaa; taa; taau2, taau3, taau4 (upscaling); msaa2, msaa4, msaa8, msaa16 (Vulkan's standard
+ * positions); supersampling as ssaaN (N points of an even sequence), gridN and jitterN (N x N, at the centres
+ * of its cells or anywhere in them), randomN. The seed is that of jitterN and randomN. Throws InputError. */
 Antialiasing antialiasing(std::string_view name, std::uint32_t seed = 0);
 
 /** Shadow maps of the raster pipeline's punctual lights. */
