@@ -1,6 +1,7 @@
 // Aliasing, seen and measured: stripes too fine for the pixels come out as coarse ones, at the frequency that
-// sampling theory says; filtering over the pixel takes them away. `aliasing [FOLDER]` prints the frequencies
-// and writes two pictures of a zone plate, with its ghosts and without.
+// sampling theory says; filtering over the pixel takes them away. A wheel that turns nearly once a frame is
+// seen to turn back slowly. `aliasing [FOLDER]` prints the frequencies and writes two pictures of a zone
+// plate, with its ghosts and without.
 #include <heliograph/fourier.hpp>
 #include <heliograph/heliograph.hpp>
 
@@ -74,6 +75,72 @@ std::pair<std::uint32_t, double> strongest(helio::Device& device, const helio::I
     return {best, 2.0 * double(std::abs(spectrum[best])) / kPixels};
 }
 
+constexpr std::uint32_t kFrames = 32;
+constexpr double kPi = 3.14159265358979323846;
+
+/** A hand on a black dial that turns `speed` times a second counter-clockwise. */
+helio::Scene wheel(double speed) {
+    helio::Scene scene = poster({1, 1}, [](double, double) { return 1.0; });
+    scene.name = "wheel";
+    scene.meshes[0].primitives[0].positions = {
+        {0, -0.06f, 0}, {0.9f, -0.06f, 0}, {0.9f, 0.06f, 0}, {0, 0.06f, 0}};
+    helio::AnimationChannel turn;
+    turn.node = 0;
+    turn.path = helio::AnimationPath::Rotation;
+    // Rotations between two keys go the shorter way: eight keys a turn.
+    const int keys = int(std::ceil(8 * speed * kFrames)) + 1;
+    for (int k = 0; k < keys; ++k) {
+        const double half = 0.5 * 2 * kPi * k / 8;
+        turn.times.push_back(float(k / (8 * speed)));
+        turn.values.insert(turn.values.end(), {0, 0, float(std::sin(half)), float(std::cos(half))});
+    }
+    scene.animations = {{"turn", {turn}}};
+    return scene;
+}
+
+/** Where the light's mean is, x to the right and y up from the middle, in each of kFrames frames one second
+ * apart. */
+std::vector<std::complex<float>> positions(helio::Renderer& renderer, const helio::Scene& scene) {
+    constexpr std::uint32_t size = 48;
+    std::vector<std::complex<float>> result;
+    for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+        helio::RenderOptions options;
+        options.size = {size, size};
+        options.pipeline = helio::Pipeline::Raster;
+        options.antialiasing = helio::antialiasing("ssaa8");
+        options.samples = 1;
+        options.auxiliary = false;
+        options.frameTime = frame;
+        const helio::ImageF image = renderer.render(scene, options).image;
+        std::complex<float> sum = 0;
+        for (std::uint32_t y = 0; y < size; ++y)
+            for (std::uint32_t x = 0; x < size; ++x)
+                sum += image.at(x, y, 0) *
+                       std::complex<float>(float(x) + 0.5f - 0.5f * size, 0.5f * size - float(y) - 0.5f);
+        result.push_back(sum / float(size * size));
+    }
+    return result;
+}
+
+/** Prints how fast wheels are seen to turn: from one frame to the next, and by the strongest of the
+ * frequencies over all frames. */
+void turnWheels(helio::Renderer& renderer) {
+    std::printf("turns a frame  predicted     seen  predicted bin of %u  seen\n", kFrames);
+    for (const double speed : {0.25, 0.75, 0.9, 1.1}) {
+        const std::vector<std::complex<float>> hand = positions(renderer, wheel(speed));
+        double angle = 0;
+        for (std::uint32_t k = 1; k < kFrames; ++k) angle += double(std::arg(hand[k] / hand[k - 1]));
+        const auto spectrum = helio::fourierTransform(renderer.device(), hand, {kFrames, 1});
+        int best = 0;
+        for (int k = 0; k < int(kFrames); ++k)
+            if (std::abs(spectrum[std::size_t(k)]) > std::abs(spectrum[std::size_t(best)])) best = k;
+        if (best > int(kFrames) / 2) best -= int(kFrames);
+        const double predicted = speed - std::round(speed);
+        std::printf("%13.2f  %9.4f  %7.4f  %19d  %4d\n", speed, predicted, angle / (2 * kPi * (kFrames - 1)),
+                    int(std::round(predicted * kFrames)), best);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -94,6 +161,7 @@ int main(int argc, char** argv) try {
             std::uint32_t(std::abs(double(cycles) - std::round(double(cycles) / kPixels) * kPixels));
         std::printf("%6u  %9u  %4u  %9.4f  %15.4f\n", cycles, predicted, seen, amplitude, filtered);
     }
+    turnWheels(renderer);
     const helio::Scene plate = poster({2048, 2048}, [](double u, double v) {
         const double x = u - 0.5, y = v - 0.5;
         return 0.5 + 0.5 * std::cos(1400.0 * (x * x + y * y));  // at the edge 223 cycles over the width

@@ -154,10 +154,22 @@ TEST(Aliasing, StripesAreSeenAtTheFrequencyThatTheorySays) {
     FILE* pipe = popen(command.c_str(), "r");
     ASSERT_NE(pipe, nullptr);
     std::array<char, 256> line;
-    int rows = 0;
+    int rows = 0, wheels = 0;
     while (std::fgets(line.data(), int(line.size()), pipe)) {
         unsigned cycles, predicted, seen;
         double amplitude, filtered;
+        double speed, turn, seenTurn;
+        int bin, seenBin;
+        // A wheel's row: its speed is no whole number.
+        if (std::sscanf(line.data(), "%lf %lf %lf %d %d", &speed, &turn, &seenTurn, &bin, &seenBin) == 5 &&
+            speed < 2) {
+            ++wheels;
+            EXPECT_NEAR(turn, speed - std::round(speed), 1e-4) << line.data();
+            EXPECT_NEAR(seenTurn, turn, 5e-4) << line.data();
+            EXPECT_EQ(bin, int(std::round(turn * 32))) << line.data();
+            EXPECT_EQ(seenBin, bin) << line.data();
+            continue;
+        }
         if (std::sscanf(line.data(), "%u %u %u %lf %lf", &cycles, &predicted, &seen, &amplitude, &filtered) !=
             5)
             continue;
@@ -174,6 +186,7 @@ TEST(Aliasing, StripesAreSeenAtTheFrequencyThatTheorySays) {
     }
     EXPECT_EQ(pclose(pipe), 0);
     EXPECT_EQ(rows, 5);
+    EXPECT_EQ(wheels, 4);
     EXPECT_TRUE(std::filesystem::exists(folder / "zone-plate-nearest.png"));
     std::filesystem::remove_all(folder);
 }
