@@ -62,8 +62,13 @@ class Bench:
 
     def cycles(self, scene, samples, seed):
         out = self.path("c-%s-%d-%d.exr" % (scene, samples, seed))
-        text = subprocess.run(self.cycles_command(scene, samples, seed, out), check=True, capture_output=True,
-                              text=True).stdout
+        for attempt in range(3):
+            done = subprocess.run(self.cycles_command(scene, samples, seed, out), capture_output=True, text=True)
+            if done.returncode >= 0:
+                break
+            print("blender died of signal %d, again" % -done.returncode, file=sys.stderr)  # now and then it does
+        done.check_returncode()
+        text = done.stdout
         return out, float([line for line in text.splitlines() if line.startswith("cycles ")][-1].split()[1])
 
     def whole(self, scene, rows):
