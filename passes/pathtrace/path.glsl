@@ -62,16 +62,15 @@ float largestOf(vec3 v) {
 }
 
 /**
- * Takes the path through what its ray met: adds emission or environment, gives a shadow ray to be asked (its
+ * Takes the path through the surface that its ray met: adds emission, gives a shadow ray to be asked (its
  * radiance to be added if the way is free), and the next ray. Returns whether the path goes on; `cut` is set
- * where it ends only because of maxDepth.
+ * where it ends only because of maxDepth. Where nothing was met (`slot` < 0), nothing is added or asked.
  */
-bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth, vec3 environment,
-             out ShadowRay shadow, out bool cut) {
+bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth, out ShadowRay shadow,
+             out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, path.source, max(slot, 0));
     if (hit) path.throughput *= throughMedium(s, path.direction, path.source, distance);
-    if (HAS_ENVIRONMENT) path.radiance += hit ? vec3(0.0) : path.throughput * environmentLight(path.direction, path.density, path.lightPlace, environment);
     if (HAS_EMISSION) {
         const Emission e = emission(s.triangle.material, s.triangle.g, s.b);
         const bool emits = hit && (s.front || e.doubleSided);

@@ -3,6 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 /** @file
  * Regenerating megakernel: one invocation per pixel traces path after path; a path that ends is followed by
  * the pixel's next sample at once, so that lanes stay busy. A dispatch takes a bounded number of loop turns
@@ -65,6 +66,9 @@ layout(set = 0, binding = 2, std430) buffer Counters {
 
 layout(constant_id = 4) const uint FILTER_KIND = FILTER_BOX;
 layout(constant_id = 3) const bool COUNT_TURNS = true;  ///< the loop's body has loops of its own
+/** While no ray of a group meets anything, next samples are begun without what surfaces need: masks skip no code where
+ * the driver has no branches, a loop does. Of small scenes that costs more than it saves. */
+const bool SKIPS_MISSES = HAS_ENVIRONMENT && COUNT_TURNS;
 
 #ifdef CAMERA_TABLE
 /** The time of a path's rays. */
@@ -118,11 +122,10 @@ void main() {
     uint sampleIndex = uint(s0.w);
     PixelSampler numbers = startSample(SAMPLER_KIND, pixelIndex, sampleIndex, parameters.seed, SAMPLER_STRATA);
     const bool resumed = s7.w > 0.0;
-    Path path = startPath(numbers, pixel, sampleIndex);
-    if (resumed) {
-        path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w), int(s5.w));
-    }
-    if (s7.w > 1.5) {
+    // 1: within a path, 3: between two; 1 more where the batch has samples.
+    bool between = !resumed || s7.w > 2.5;
+    Path path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w), int(s5.w));
+    if (resumed && (s7.w > 2.5 ? s7.w > 3.5 : s7.w > 1.5)) {
         // Each half has at most 2048 of a batch's samples.
         const float countB = floor(s4.w * (1.0 / 4096.0));
         batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w - 4096.0 * countB, countB, s6.w, true);
@@ -137,15 +140,47 @@ void main() {
     if (inside && begin) clearBounces(pixel, parameters.size);
 #endif
     uint cameraRays = 0u, bounceRays = 0u, shadowRays = 0u, cutPaths = 0u, abandonedRays = 0u;
-    cameraRays += inside && !resumed && sampleIndex < sampleEnd ? 1u : 0u;
     uint spent = 0u;
     while (inside && path.sampleIndex < sampleEnd && spent < parameters.budget) {
-#ifdef MOTION_KEYS
-        setMotionTime(pathTime(numbers, pixel));
-#endif
         float distance;
-        int slot;
-        const int closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
+        int slot, closestTurns;
+        bool skips;
+        do {
+            if (between) {
+                numbers = startSample(SAMPLER_KIND, pixelIndex, path.sampleIndex, parameters.seed, SAMPLER_STRATA);
+                path = startPath(numbers, pixel, path.sampleIndex);
+                cameraRays += 1u;
+            }
+#ifdef MOTION_KEYS
+            setMotionTime(pathTime(numbers, pixel));
+#endif
+            closestTurns = closestSurface(path.origin, path.direction, path.source, hashCombine(numbers.key ^ pixelIndex, numbers.index + path.depth * 2u), false, distance, slot);
+            const bool misses = slot < 0;
+            if (HAS_ENVIRONMENT) {
+                const vec3 seen = environmentLight(path.direction, path.density, path.lightPlace, parameters.environment.xyz);
+                const vec3 sky = misses ? path.throughput * seen : vec3(0.0);
+#ifdef BOUNCES
+                addBounce(pixel, parameters.size, path.depth, sky);
+#endif
+                path.radiance += sky;
+            }
+            between = SKIPS_MISSES && misses;
+            if (between) {
+                addFilmSample(batch, path.sampleIndex, path.radiance);
+                path.sampleIndex += 1u;
+            }
+            spent += 1u + uint(LENS_SURFACES);
+#ifdef METER
+            spent += meterTurns;
+            meterTurns = 0u;
+#endif
+            if (COUNT_TURNS) {
+                abandonedRays += closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
+                spent += uint(subgroupMax(closestTurns));
+            }
+            skips = between && path.sampleIndex < sampleEnd && spent < parameters.budget;
+        } while (SKIPS_MISSES && subgroupAll(skips));
+
         bool cut;
         ShadowRay shadow;
 #ifdef BOUNCES
@@ -153,7 +188,7 @@ void main() {
         const vec3 before = path.radiance;
         path.radiance = vec3(0.0);
 #endif
-        bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, parameters.environment.xyz, shadow, cut);
+        bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, shadow, cut);
         bool blocked;
         float passes;
         const int shadowTurns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
@@ -171,21 +206,15 @@ void main() {
         shadowRays += shadow.limit > 0.0 ? 1u : 0u;
         bounceRays += alive ? 1u : 0u;
         cutPaths += cut ? parameters.countCut : 0u;
-        if (!alive) {
+        if (!alive && !between) {
             addFilmSample(batch, path.sampleIndex, path.radiance);
-            const uint next = path.sampleIndex + 1u;
-            numbers = startSample(SAMPLER_KIND, pixelIndex, next, parameters.seed, SAMPLER_STRATA);
-            path = startPath(numbers, pixel, next);
-            cameraRays += next < sampleEnd ? 1u : 0u;
+            path.sampleIndex += 1u;
+            between = true;
         }
-        spent += 1u + LOOP_TURNS + uint(LENS_SURFACES);
-#ifdef METER
-        spent += meterTurns;
-        meterTurns = 0u;
-#endif
+        spent += LOOP_TURNS;
         if (COUNT_TURNS) {
-            abandonedRays += (closestTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u) + (shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u);
-            spent += uint(subgroupMax(closestTurns) + subgroupMax(shadowTurns));
+            abandonedRays += shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
+            spent += uint(subgroupMax(shadowTurns));
         }
     }
 
@@ -206,7 +235,7 @@ void main() {
             imageStore(uState, place + ivec2(0, 1), vec4(batch.sumA, batch.countA + 4096.0 * batch.countB));
             imageStore(uState, place + ivec2(1, 1), vec4(batch.sumB, float(path.lightPlace)));
             imageStore(uState, place + ivec2(2, 1), vec4(batch.squares, batch.rejected));
-            imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, batch.shifted ? 2.0 : 1.0));
+            imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, (batch.shifted ? 2.0 : 1.0) + (between ? 2.0 : 0.0)));
         }
     }
     const uint unfinished = subgroupAdd(inside && !finished ? 1u : 0u);
