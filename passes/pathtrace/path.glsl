@@ -36,6 +36,11 @@ float rouletteChance(float throughput) {
     return SURVIVAL > 0.0 ? (throughput > 0.0 ? SURVIVAL : 0.0) : min(1.0, ROULETTE * throughput);
 }
 
+/** Scatterings after which mirrors and total reflection lose one path in a hundred, which the others stand for: near its
+ * critical angle a sphere of glass holds light for 10^5 turns without a loss that roulette could go by. */
+const uint LOSSLESS_DEPTH = 64u;
+const float LOSSLESS_SURVIVAL = 0.99;
+
 struct Path {
     vec3 origin;
     vec3 direction;    ///< unit
@@ -145,7 +150,8 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     path.origin = leaving(s, next.direction);
     path.source = slot;
     path.depth += 1u;
-    const float keep = path.depth < 2u ? 1.0 : rouletteChance(largestOf(path.throughput));
+    float keep = path.depth < 2u ? 1.0 : rouletteChance(largestOf(path.throughput));
+    if (SURVIVAL == 0.0 && path.depth > LOSSLESS_DEPTH && next.density < 0.0) keep *= LOSSLESS_SURVIVAL;
     alive = alive && next.goes && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;

@@ -1,9 +1,12 @@
 /** @file
  * The four scenes of the comparison with Cycles as glTF files, in world space: built-in samples, changed to
- * what both renderers can say exactly. bench_cycles_scenes FOLDER Two are scaled from millimetres to metres:
- * Cycles' choice between sampling a light and its own rays takes distances for metres, and darkens the
- * Cornell box by percents at its native size.
+ * what both renderers can say exactly: bench_cycles_scenes FOLDER. Where a sample has exact spheres,
+ * NAME.gltf has them, and NAME-triangles.gltf 81,920 triangles for each, since Cycles has none. Two are
+ * scaled from millimetres to metres: Cycles' choice between sampling a light and its own rays takes distances
+ * for metres, and darkens the Cornell box by percents at its native size.
  */
+#include "engine/scene/samples/shapes.hpp"
+
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
@@ -90,6 +93,29 @@ json materialJson(const Material& m) {
     return out;
 }
 
+/** A node that places an exact sphere of a sample. */
+json shapeNode(const Instance& instance, const Primitive& primitive, float scale) {
+    if (primitive.shape->kind != Shape::Kind::Sphere) throw std::runtime_error("only spheres are written");
+    const glm::dvec3 centre = double(scale) * glm::dvec3(instance.transform[3]);
+    const double radius =
+        double(scale) * double(primitive.shape->radius) * glm::length(glm::dvec3(instance.transform[0]));
+    return {{"translation", {centre.x, centre.y, centre.z}},
+            {"extras",
+             {{"heliograph",
+               {{"shape", {{"kind", "sphere"}, {"radius", radius}, {"material", primitive.material}}}}}}}};
+}
+
+/** Spheres of triangles in place of exact ones. */
+void cutShapes(Scene& scene) {
+    for (Mesh& mesh : scene.meshes)
+        for (Primitive& primitive : mesh.primitives)
+            if (primitive.shape) {
+                const float radius = primitive.shape->radius;
+                primitive = sphereShape(64, primitive.material);
+                for (glm::vec3& p : primitive.positions) p *= radius;
+            }
+}
+
 void save(const Scene& scene, float scale, const std::filesystem::path& file) {
     Binary binary;
     json& document = binary.document;
@@ -101,6 +127,10 @@ void save(const Scene& scene, float scale, const std::filesystem::path& file) {
         const glm::dmat3 normalMatrix = glm::transpose(glm::inverse(glm::dmat3(instance.transform)));
         json primitives;
         for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
+            if (primitive.shape) {
+                nodes.push_back(shapeNode(instance, primitive, scale));
+                continue;
+            }
             std::vector<glm::vec3> positions, normals;
             for (const glm::vec3& p : primitive.positions)
                 positions.emplace_back(double(scale) * glm::dvec3(instance.transform * glm::dvec4(p, 1.0)));
@@ -112,6 +142,7 @@ void save(const Scene& scene, float scale, const std::filesystem::path& file) {
                                   {"indices", binary.add(primitive.indices, 5125, "SCALAR")},
                                   {"material", primitive.material}});
         }
+        if (primitives.empty()) continue;
         document["meshes"].push_back({{"primitives", primitives}});
         nodes.push_back({{"mesh", document["meshes"].size() - 1}});
     }
@@ -171,6 +202,9 @@ int main(int argc, char** argv) {
             Scene scene = load(std::string("sample:") + name);
             simplify(scene);
             save(scene, scale, std::filesystem::path(argv[1]) / (std::string(name) + ".gltf"));
+            if (scene.shapeCount() == 0) continue;
+            cutShapes(scene);
+            save(scene, scale, std::filesystem::path(argv[1]) / (std::string(name) + "-triangles.gltf"));
         }
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_cycles_scenes: %s\n", error.what());
