@@ -163,9 +163,9 @@ TEST_P(EverySample, IsInViewAndLit) {
     const double limit = std::tan(scene.cameras[std::size_t(placed.camera)].yfov / 2.0);
     int inside = 0;
     for (const Instance& instance : scene.instances()) {
-        const Primitive& primitive = scene.meshes[std::size_t(instance.mesh)].primitives[0];
-        const glm::dvec3 p(toCamera * instance.transform *
-                           glm::dvec4(primitive.shape ? glm::vec3(0) : primitive.positions[0], 1));
+        const glm::dvec3 p(
+            toCamera * instance.transform *
+            glm::dvec4(scene.meshes[std::size_t(instance.mesh)].primitives[0].positions[0], 1));
         inside += p.z < 0 && std::abs(p.x) < -p.z * limit * 16 / 9 && std::abs(p.y) < -p.z * limit;
     }
     EXPECT_GT(inside, 0);

@@ -1,6 +1,6 @@
 /** @file
- * The Cornell box with a mirror sphere and a glass sphere in place of its blocks, both exact: caustics on
- * floor and wall, and light that no sample of the lamp finds.
+ * The Cornell box with a mirror sphere and a glass sphere in place of its blocks, 81,920 triangles each:
+ * caustics on floor and wall, and light that no sample of the lamp finds.
  */
 #include "engine/scene/samples/sample.hpp"
 #include "engine/scene/samples/shapes.hpp"
@@ -14,7 +14,7 @@ void addSphere(Scene& scene, Material material, glm::vec3 centre) {
     Node node;
     node.name = material.name;
     const std::string name = material.name;
-    node.mesh = addMesh(scene, name, roundShape(1, addMaterial(scene, std::move(material))));
+    node.mesh = addMesh(scene, name, sphereShape(64, addMaterial(scene, std::move(material))));
     node.translation = centre;
     node.scale = glm::vec3(centre.y);  // it stands on the floor
     addRoot(scene, node);

@@ -77,13 +77,6 @@ Primitive sphereShape(int frequency, int material) {
     return primitive;
 }
 
-Primitive roundShape(float radius, int material) {
-    Primitive sphere;
-    sphere.shape = Shape{.radius = radius};
-    sphere.material = material;
-    return sphere;
-}
-
 Primitive prismShape(int sides, int material) {
     Primitive primitive;
     primitive.material = material;

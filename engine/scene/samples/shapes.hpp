@@ -8,8 +8,6 @@ namespace helio {
 
 /** Unit sphere about the origin: an icosahedron's faces cut into frequency^2 triangles, smooth. */
 Primitive sphereShape(int frequency, int material);
-/** Sphere about the origin without triangles: exact, and met in a few operations. */
-Primitive roundShape(float radius, int material);
 /** Upright prism of unit radius from y = 0 to 1 with a lid but no floor, flat-shaded. */
 Primitive prismShape(int sides, int material);
 /** Two pyramids base to base, of unit radius, from y = -1 to 1, flat-shaded. */

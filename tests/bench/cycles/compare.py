@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SCENES = ["cornell", "plates", "glass", "glass-triangles", "lights500"]  # glass: with exact spheres here
+SCENES = ["cornell", "plates", "plates-triangles", "glass", "glass-triangles", "lights500"]  # exact spheres but for -triangles
 ASSETS = {"helmet": "hdri/studio.exr", "fox": "hdri/sunset.exr"}  # and what surrounds them
 
 

@@ -1,12 +1,10 @@
 /** @file
  * The four scenes of the comparison with Cycles as glTF files, in world space: built-in samples, changed to
- * what both renderers can say exactly: bench_cycles_scenes FOLDER. Where a sample has exact spheres,
- * NAME.gltf has them, and NAME-triangles.gltf 81,920 triangles for each, since Cycles has none. Two are
+ * what both renderers can say exactly: bench_cycles_scenes FOLDER. Of a sample with spheres NAME.gltf has
+ * exact ones, and NAME-triangles.gltf the sample's triangles, since Cycles has no others. Two are
  * scaled from millimetres to metres: Cycles' choice between sampling a light and its own rays takes distances
  * for metres, and darkens the Cornell box by percents at its native size.
  */
-#include "engine/scene/samples/shapes.hpp"
-
 #include <heliograph/error.hpp>
 #include <heliograph/scene.hpp>
 
@@ -105,15 +103,18 @@ json shapeNode(const Instance& instance, const Primitive& primitive, float scale
                {{"shape", {{"kind", "sphere"}, {"radius", radius}, {"material", primitive.material}}}}}}}};
 }
 
-/** Spheres of triangles in place of exact ones. */
-void cutShapes(Scene& scene) {
+/** The same scene with exact spheres in place of smooth meshes about the origin of unit radius. */
+Scene withExactSpheres(Scene scene) {
     for (Mesh& mesh : scene.meshes)
-        for (Primitive& primitive : mesh.primitives)
-            if (primitive.shape) {
-                const float radius = primitive.shape->radius;
-                primitive = sphereShape(64, primitive.material);
-                for (glm::vec3& p : primitive.positions) p *= radius;
-            }
+        for (Primitive& primitive : mesh.primitives) {
+            const bool isSphere = !primitive.normals.empty() && primitive.normals == primitive.positions;
+            if (!isSphere) continue;
+            Primitive exact;
+            exact.shape = Shape{};
+            exact.material = primitive.material;
+            primitive = exact;
+        }
+    return scene;
 }
 
 void save(const Scene& scene, float scale, const std::filesystem::path& file) {
@@ -201,10 +202,12 @@ int main(int argc, char** argv) {
              {std::pair{"cornell", 1e-3f}, {"plates", 1.0f}, {"glass", 1e-3f}, {"lights500", 1.0f}}) {
             Scene scene = load(std::string("sample:") + name);
             simplify(scene);
-            save(scene, scale, std::filesystem::path(argv[1]) / (std::string(name) + ".gltf"));
-            if (scene.shapeCount() == 0) continue;
-            cutShapes(scene);
-            save(scene, scale, std::filesystem::path(argv[1]) / (std::string(name) + "-triangles.gltf"));
+            const Scene exact = withExactSpheres(scene);
+            const auto path = [&](const char* ending) {
+                return std::filesystem::path(argv[1]) / (std::string(name) + ending);
+            };
+            save(exact, scale, path(".gltf"));
+            if (exact.shapeCount() > 0) save(scene, scale, path("-triangles.gltf"));
         }
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_cycles_scenes: %s\n", error.what());
