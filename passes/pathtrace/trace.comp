@@ -39,6 +39,8 @@ layout(push_constant) uniform Parameters {
 
 /** A pixel's state between dispatches: 4 x 2 texels. */
 layout(set = 0, binding = 0, rgba32f) uniform image2D uState;
+/** What is kept of a pixel that has samples to go: its state, between two paths or within one, and a batch with samples. */
+const uint KEPT = 1u, KEPT_BETWEEN = 2u, KEPT_BATCH = 4u;
 
 #ifdef ADAPTIVE
 layout(set = 0, binding = 45) uniform usamplerBuffer uSampleEnds;  ///< R32UI: each pixel's own sampleEnd
@@ -121,11 +123,11 @@ void main() {
     FilmBatch batch = startFilmBatch(stored);
     uint sampleIndex = uint(s0.w);
     PixelSampler numbers = startSample(SAMPLER_KIND, pixelIndex, sampleIndex, parameters.seed, SAMPLER_STRATA);
-    const bool resumed = s7.w > 0.0;
-    // 1: within a path, 3: between two; 1 more where the batch has samples.
-    bool between = !resumed || s7.w > 2.5;
+    const uint kept = uint(s7.w);
+    const bool resumed = kept != 0u;
+    bool between = !resumed || (kept & KEPT_BETWEEN) != 0u;
     Path path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), sampleIndex, int(s3.w), int(s5.w));
-    if (resumed && (s7.w > 2.5 ? s7.w > 3.5 : s7.w > 1.5)) {
+    if ((kept & KEPT_BATCH) != 0u) {
         // Each half has at most 2048 of a batch's samples.
         const float countB = floor(s4.w * (1.0 / 4096.0));
         batch = FilmBatch(s7.xyz, s4.xyz, s5.xyz, s6.xyz, s4.w - 4096.0 * countB, countB, s6.w, true);
@@ -235,7 +237,7 @@ void main() {
             imageStore(uState, place + ivec2(0, 1), vec4(batch.sumA, batch.countA + 4096.0 * batch.countB));
             imageStore(uState, place + ivec2(1, 1), vec4(batch.sumB, float(path.lightPlace)));
             imageStore(uState, place + ivec2(2, 1), vec4(batch.squares, batch.rejected));
-            imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, (batch.shifted ? 2.0 : 1.0) + (between ? 2.0 : 0.0)));
+            imageStore(uState, place + ivec2(3, 1), vec4(batch.shift, float(KEPT | (between ? KEPT_BETWEEN : 0u) | (batch.shifted ? KEPT_BATCH : 0u))));
         }
     }
     const uint unfinished = subgroupAdd(inside && !finished ? 1u : 0u);
