@@ -15,14 +15,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-PathTraceOptions options(std::uint32_t size, std::uint32_t maxDepth = kUnlimitedDepth) {
-    PathTraceOptions o;
-    o.size = {size, size};
-    o.sampler = SamplerKind::Independent;
-    o.maxDepth = maxDepth;
-    return o;
-}
-
 void expectMean(const Traced& image, double truth, const std::string& what) {
     const Estimate e = estimate(image, 0, [](std::size_t) { return true; });
     const double z = (e.mean - truth) / e.error;
@@ -46,7 +38,8 @@ TEST(PathIrradiance, UnderARectangle) {
         const float h = float(side / 2);
         b.quad({-h, -h, 1}, {-h, h, 1}, {h, h, 1}, {h, -h, 1}, b.material(glm::vec3(0.0f), glm::vec3(1.0f)));
         const double truth = side == 1.0 ? 0.752274688454 : 1.740839502730;
-        expectMean(trace(b.scene, options(16, 1), 512), truth / kPi, fmt::format("square {}", side));
+        expectMean(trace(b.scene, independentOptions(16, 1), 512), truth / kPi,
+                   fmt::format("square {}", side));
     }
 }
 
@@ -62,7 +55,7 @@ TEST(PathIrradiance, UnderADisk) {
     for (int i = 0; i < n; ++i)
         for (const glm::vec3& p : {glm::vec3(0, 0, 2), rim(i + 1), rim(i)}) corners.push_back(p);
     b.triangles(corners, b.material(glm::vec3(0.0f), glm::vec3(1.0f)));
-    expectMean(trace(b.scene, options(16, 1), 512), 0.628318530718 / kPi, "disk");
+    expectMean(trace(b.scene, independentOptions(16, 1), 512), 0.628318530718 / kPi, "disk");
 }
 
 TEST(PathIrradiance, UnderASphere) {
@@ -77,8 +70,8 @@ TEST(PathIrradiance, UnderASphere) {
         const glm::vec3 centre(float(c.distance * std::sin(c.angle)), 0,
                                float(c.distance * std::cos(c.angle)));
         b.sphere(centre, 1.0f, 5, false, b.material(glm::vec3(0.0f), glm::vec3(1.0f)));
-        expectMean(trace(b.scene, options(16, 1), c.angle > 1.5 ? 12288 : 4096, 512), c.truth / kPi,
-                   fmt::format("sphere at {:.0f} degrees", c.angle * 180 / kPi));
+        expectMean(trace(b.scene, independentOptions(16, 1), c.angle > 1.5 ? 12288 : 4096, 512),
+                   c.truth / kPi, fmt::format("sphere at {:.0f} degrees", c.angle * 180 / kPi));
     }
 }
 
@@ -106,7 +99,7 @@ TEST(PathIrradiance, CubeTable) {
     for (const Case& c : cases) {
         SceneBuilder b = cube();
         b.camera({0.6f, 0.45f, 0.55f}, c.point, 2e-3f, {0.1f, 0.9f, 0.2f});
-        const Traced image = trace(b.scene, options(16), 2048, 512);
+        const Traced image = trace(b.scene, independentOptions(16), 2048, 512);
         const std::string what = fmt::format("cube at ({}, {}, {})", c.point.x, c.point.y, c.point.z);
         if (c.truth == 1.0) {
             for (const glm::dvec3& value : image.mean) EXPECT_EQ(value.x, 1.0);
@@ -127,7 +120,7 @@ TEST(PathIrradiance, CubeMeans) {
         b.camera(c.eye, c.target, 1, {0, 1, 0});
         b.scene.cameras[0].perspective = false;  // parallel rays over the whole face
         b.scene.cameras[0].ymag = 0.5f;
-        expectMean(trace(b.scene, options(32), 512), c.truth, "cube face");
+        expectMean(trace(b.scene, independentOptions(32), 512), c.truth, "cube face");
     }
 }
 

@@ -8,6 +8,14 @@
 
 namespace helio::test {
 
+PathTraceOptions independentOptions(std::uint32_t size, std::uint32_t maxDepth) {
+    PathTraceOptions o;
+    o.size = {size, size};
+    o.sampler = SamplerKind::Independent;
+    o.maxDepth = maxDepth;
+    return o;
+}
+
 Traced trace(Scene scene, const PathTraceOptions& options, std::uint32_t samples, std::uint32_t step,
              const std::string& camera) {
     Traced result;

@@ -20,6 +20,9 @@ struct Traced {
     FirstHits hits;
 };
 
+/** Square pictures of independent samples, whose variance the statistics below take. */
+PathTraceOptions independentOptions(std::uint32_t size, std::uint32_t maxDepth = kUnlimitedDepth);
+
 /** Traces `samples` per pixel in steps of `step` through the camera `name`. */
 Traced trace(Scene scene, const PathTraceOptions& options, std::uint32_t samples, std::uint32_t step = 64,
              const std::string& camera = {});

@@ -97,6 +97,15 @@ void SceneBuilder::camera(const glm::vec3& eye, const glm::vec3& target, float y
     node(placed);
 }
 
+void SceneBuilder::whiteImageAround() {
+    TextureImage image;
+    image.width = 4;
+    image.height = 2;
+    image.texels = std::vector<float>(32, 1.0f);
+    scene.images.push_back(std::move(image));
+    scene.environment = Environment{glm::vec3(1.0f), int(scene.images.size()) - 1};
+}
+
 void SceneBuilder::pointLight(const glm::vec3& position, const glm::vec3& intensity) {
     PunctualLight light;
     light.intensity = intensity;

@@ -27,6 +27,8 @@ public:
     int sphere(const glm::vec3& centre, float radius, int levels, bool inwards, int material);
     /** A perspective camera at `eye` looking at `target`. */
     void camera(const glm::vec3& eye, const glm::vec3& target, float yfov, const glm::vec3& up = {0, 1, 0});
+    /** Surroundings of 1 by an image, of 4 x 2 texels. */
+    void whiteImageAround();
     void pointLight(const glm::vec3& position, const glm::vec3& intensity);
     Scene scene;
 

@@ -47,12 +47,13 @@ Shape quad(float width, float height) {
 /** Turns a flat shape's front from +Z to -Z. */
 const glm::quat kTurned(0, 1, 0, 0);
 
-PathTraceOptions options(std::uint32_t size, std::uint32_t maxDepth = kUnlimitedDepth) {
-    PathTraceOptions o;
-    o.size = {size, size};
-    o.sampler = SamplerKind::Independent;
-    o.maxDepth = maxDepth;
-    return o;
+glm::vec3 randomDirection(std::mt19937& random) {
+    std::uniform_real_distribution<float> both(-1, 1);
+    for (;;) {
+        const glm::vec3 v(both(random), both(random), both(random));
+        const float squared = glm::dot(v, v);
+        if (squared > 1e-4f && squared < 1) return v / std::sqrt(squared);
+    }
 }
 
 void expectMean(const Traced& image, double truth, const std::string& what, double tolerance = 0.002) {
@@ -96,13 +97,7 @@ bool exactRoots(const glm::vec3& o, const glm::vec3& d, const glm::vec4& s, Real
 TEST(PathShapes, SpheresAreMetAtTheirExactDistance) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
-    const auto direction = [&] {
-        for (;;) {
-            const glm::vec3 v(both(random), both(random), both(random));
-            const float squared = glm::dot(v, v);
-            if (squared > 1e-4f && squared < 1) return v / std::sqrt(squared);
-        }
-    };
+    const auto direction = [&] { return randomDirection(random); };
     enum Kind { Far, Grazing, Inside, On, kinds };
     constexpr const char* names[] = {"1e4 to 1e6 away", "grazing", "from inside", "from on it"};
     constexpr std::size_t each = 200'000;
@@ -199,13 +194,7 @@ double byEigenvalues(const glm::dvec3& o, const glm::dvec3& d, double tube) {
 TEST(PathShapes, NoRayMissesATorus) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
-    const auto direction = [&] {
-        for (;;) {
-            const glm::vec3 v(both(random), both(random), both(random));
-            const float squared = glm::dot(v, v);
-            if (squared > 1e-4f && squared < 1) return v / std::sqrt(squared);
-        }
-    };
+    const auto direction = [&] { return randomDirection(random); };
     constexpr std::size_t count = 1'000'000;
     std::vector<glm::vec3> origins, directions;
     std::vector<float> tubes;
@@ -273,8 +262,8 @@ TEST(PathShapes, IrradianceUnderEachKind) {
         SceneBuilder b;
         addReceiver(b, {-3, 0.5f, 0.4f});
         add(b, shape, at, b.material(glm::vec3(0.0f), glm::vec3(1.0f))).rotation = turn;
-        expectMean(trace(b.scene, options(16, 1), 1024), truth / kPi, what, 0.005);
-        PathTraceOptions blind = options(16, 1);
+        expectMean(trace(b.scene, independentOptions(16, 1), 1024), truth / kPi, what, 0.005);
+        PathTraceOptions blind = independentOptions(16, 1);
         blind.nextEventEstimation = false;
         expectMean(trace(b.scene, blind, 1024), truth / kPi, fmt::format("{}, found by rays", what), 0.03);
     };
@@ -297,10 +286,10 @@ TEST(PathShapes, LightsOfEveryChoiceAddUp) {
         add(b, sphere(1), {2, 0, 0}, two);
         add(b, disc(0.5f), {-1, 0, 1}, one).rotation = kTurned;
         add(b, quad(0.5f, 0.25f), {0, -1.5f, 0.75f}, two).rotation = glm::quat(0.6f, 0.8f, 0, 0);
-        PathTraceOptions o = options(16, 1);
+        PathTraceOptions o = independentOptions(16, 1);
         o.lights = choice;
         const Estimate e = estimate(trace(b.scene, o, 1024), 0, [](std::size_t) { return true; });
-        PathTraceOptions blind = options(16, 1);
+        PathTraceOptions blind = independentOptions(16, 1);
         blind.nextEventEstimation = false;
         const Estimate truth =
             estimate(trace(b.scene, blind, 2048, 512), 0, [](std::size_t) { return true; });
@@ -317,7 +306,8 @@ TEST(PathShapes, InsideASphereThatEmitsAndReflectsHalf) {
         SceneBuilder b;
         add(b, sphere(1), {float(placed), 0, 0}, b.material(glm::vec3(0.5f), glm::vec3(0.5f), true));
         b.camera({float(placed) + 0.25f, 0.25f, 0.25f}, {float(placed), -1, 0.5f}, 1.2f);
-        expectMean(trace(b.scene, options(16), 4096), 1.0, fmt::format("sphere at {}", placed), 0.001);
+        expectMean(trace(b.scene, independentOptions(16), 4096), 1.0, fmt::format("sphere at {}", placed),
+                   0.001);
     }
 }
 
@@ -339,14 +329,10 @@ TEST(PathShapes, GlassInAWhiteFurnace) {
     add(b, sphere(1), {0, 0, 0}, int(b.scene.materials.size()) - 1);
     add(b, {.kind = Shape::Kind::Torus, .radius = 1.5f, .tubeRadius = 0.3f}, {0, 0, 0},
         int(b.scene.materials.size()) - 1);
-    TextureImage image;
-    image.width = 4;
-    image.height = 2;
-    image.texels = std::vector<float>(32, 1.0f);
-    b.scene.images.push_back(image);
-    b.scene.environment = Environment{glm::vec3(1.0f), 0};
+    b.whiteImageAround();
     b.camera({0, 0.5f, 4}, {0, 0, 0}, 0.8f);
-    for (const glm::dvec3& value : trace(b.scene, options(16), 64).mean) EXPECT_NEAR(value.y, 1.0, 1e-5);
+    for (const glm::dvec3& value : trace(b.scene, independentOptions(16), 64).mean)
+        EXPECT_NEAR(value.y, 1.0, 1e-5);
 }
 
 /** What light sampling does not find shines as rays find it, though other surfaces of its material are
@@ -358,7 +344,8 @@ TEST(PathShapes, WhatIsFoundByRaysAloneShinesInFull) {
     add(b, quad(1, 1), {0, 0, 0.5f}, one).rotation = kTurned;
     add(b, {.kind = Shape::Kind::Plane}, {0, 0, 2}, one).rotation = kTurned;
     add(b, {.kind = Shape::Kind::Torus, .radius = 0.8f, .tubeRadius = 0.1f}, {0, 0, 0.8f}, one);
-    expectMean(trace(b.scene, options(16, 1), 1024), 1.0, "under a quad, a torus and a plane", 0.005);
+    expectMean(trace(b.scene, independentOptions(16, 1), 1024), 1.0, "under a quad, a torus and a plane",
+               0.005);
 }
 
 /** A torus that emits and reflects half is not closed to itself; all it sees of itself and of surroundings of
@@ -370,7 +357,7 @@ TEST(PathShapes, TorusInAFurnaceOfItsOwnLight) {
         glm::quat(0.8f, 0.6f, 0, 0);
     b.scene.environment = Environment{glm::vec3(1.0f)};
     b.camera({0, 0.5f, 4}, {0, 0, 0}, 0.8f);
-    expectMean(trace(b.scene, options(16), 1024), 1.0, "torus", 0.001);
+    expectMean(trace(b.scene, independentOptions(16), 1024), 1.0, "torus", 0.001);
 }
 
 /** A ray along the axis of a ball lens of diameter 2 at the height h crosses a plane behind it at h (1 - d /
@@ -396,7 +383,7 @@ TEST(PathShapes, ABallLensHasItsFocalLength) {
     b.camera({0, h, 3}, {0, h, 0}, 1);
     b.scene.cameras[0].perspective = false;
     b.scene.cameras[0].ymag = 1e-6f;
-    const Traced image = trace(b.scene, options(8, 2), 64);
+    const Traced image = trace(b.scene, independentOptions(8, 2), 64);
     const Estimate red = estimate(image, 0, [](std::size_t) { return true; }),
                    green = estimate(image, 1, [](std::size_t) { return true; });
     // v = 1/4 at the upper texel's middle, and 3/4 at the lower's.
@@ -429,7 +416,7 @@ TEST(PathShapes, FirstHitsFollowTheFormulas) {
     b.scene.cameras[0].perspective = false;
     b.scene.cameras[0].ymag = 2;
     const std::uint32_t size = 64;
-    const Traced image = trace(b.scene, options(size), 1);
+    const Traced image = trace(b.scene, independentOptions(size), 1);
     std::array<std::size_t, 5> seen{};
     const auto ramped = [](double x) { return std::clamp(2 * (x - 0.25), 0.0, 1.0); };
     for (std::uint32_t i = 0; i < size * size; ++i) {
@@ -485,7 +472,7 @@ TEST(PathShapes, EveryAcceleratorFindsTheSame) {
                 ? std::vector{AcceleratorKind::Auto, AcceleratorKind::Grid, AcceleratorKind::KdTree}
                 : std::vector{AcceleratorKind::Auto, AcceleratorKind::Bvh, AcceleratorKind::BruteForce};
         for (const AcceleratorKind kind : kinds) {
-            PathTraceOptions o = options(24);
+            PathTraceOptions o = independentOptions(24);
             o.accelerator = kind;
             const Traced image = trace(b.scene, o, 8);
             if (first.empty()) first = image.mean;

@@ -60,16 +60,7 @@ const std::vector<Feature>& features() {
         {"constant surroundings",
          [](SceneBuilder& b) { b.scene.environment = Environment{glm::vec3(1.0f)}; },
          {}},
-        {"surroundings of an image",
-         [](SceneBuilder& b) {
-             TextureImage image;
-             image.width = 4;
-             image.height = 2;
-             image.texels = std::vector<float>(32, 1.0f);
-             b.scene.images.push_back(image);
-             b.scene.environment = Environment{glm::vec3(1.0f), 0};
-         },
-         {"uEnvironmentMap"}},
+        {"surroundings of an image", [](SceneBuilder& b) { b.whiteImageAround(); }, {"uEnvironmentMap"}},
         {"emissive triangles",
          [](SceneBuilder& b) {
              b.triangles({{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}},
