@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compares the README's help text with what the program prints; --write puts the program's text there.
+# Compares the help text in docs/options.md with what the program prints; --write puts the program's text there.
 #   tests/docs/help.sh BUILD [--write]
 set -euo pipefail
-readme="$(dirname "${BASH_SOURCE[0]}")/../../README.md"
+page="$(dirname "${BASH_SOURCE[0]}")/../../docs/options.md"
 program="$1/samples/heliograph/heliograph"
 expected=$(mktemp)
 trap 'rm -f "$expected"' EXIT
@@ -13,11 +13,11 @@ trap 'rm -f "$expected"' EXIT
     echo '```'
     echo '<!-- /help -->'
 } >"$expected"
-actual=$(sed -n '/^<!-- help:/,/^<!-- \/help -->/p' "$readme")
+actual=$(sed -n '/^<!-- help:/,/^<!-- \/help -->/p' "$page")
 if [ "${2:-}" = --write ]; then
     sed -i -e "/^<!-- help:/,/^<!-- \/help -->/{/^<!-- \/help -->/{r $expected
-d};d}" "$readme"
+d};d}" "$page"
 elif ! diff <(printf '%s\n' "$actual") "$expected"; then
-    echo "README.md differs from heliograph render --help; run tests/docs/help.sh $1 --write" >&2
+    echo "docs/options.md differs from heliograph render --help; run tests/docs/help.sh $1 --write" >&2
     exit 1
 fi
