@@ -67,7 +67,8 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene)
 ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bounds& bounds,
                              const Shadows& shadows, TextureFilter filter, std::uint32_t lightSamples,
                              Shading shading)
-    : scene_(scene),
+    : device_(device),
+      scene_(scene),
       filter_(scene.info().textures.empty() ? TextureFilter::Bilinear : filter),
       shading_(shading),
       mips_(device, filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
@@ -132,7 +133,9 @@ void ShadePipeline::declareCorners(Graph& graph, std::shared_ptr<const RasterVie
                          fmt::format("{} triangles have more corners than the device binds at once",
                                      scene_.info().triangleCount),
                          "shade each pixel: --shading phong");
-    constexpr std::uint32_t width = 1024;  // of the dispatch
+    // Of the dispatch, which has at most 65,535 workgroups each way.
+    auto width = std::uint32_t(1024);
+    while (corners / width >= 65535) width *= 2;
     const auto height = std::uint32_t((corners + width - 1) / width);
     const Buffer light = graph.buffer("shade.cornerLight", {corners * 32});
     common.model["CORNERS"] = shading_ == Shading::Flat ? "1" : "3";
@@ -147,7 +150,7 @@ void ShadePipeline::declareCorners(Graph& graph, std::shared_ptr<const RasterVie
         pass.reads({{"uEnvironment", common.environment, Format::RGBA32F}})
             .reads(common.surroundings)
             .reads(common.drawnLights)
-            .record([view, first, count, height](Commands& c) {
+            .record([view, first, count, width, height](Commands& c) {
                 c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(width, height);
             });
         if (first == begin)
@@ -290,6 +293,12 @@ MultisampleOutput ShadePipeline::declareMultisample(Graph& graph, Buffer visibil
             pass.modifies({{"uColor", output.color}, {"uShadings", output.shadings}});
     }
     return output;
+}
+
+std::pair<Kernel, SpecConstants> ShadePipeline::surfaceKernel(const RasterView& view) {
+    Graph graph(device_);  // never compiled
+    const Common common = declareCommon(graph, std::make_shared<const RasterView>(view));
+    return {common.kernel(shaders::shadeSurface), common.firstSpec};
 }
 
 bool ShadePipeline::seesThrough() const {

@@ -75,6 +75,9 @@ public:
     MultisampleOutput declareMultisample(Graph& graph, Buffer visibility, std::uint32_t samples,
                                          std::shared_ptr<const RasterView> view);
 
+    /** The kernel that shades pixels, with its constants: what the scene's features leave of it. */
+    std::pair<Kernel, SpecConstants> surfaceKernel(const RasterView& view);
+
     /** Whether some surfaces let through part of what is behind: only declareLayer shows it. */
     bool seesThrough() const;
     /** Shades the layer of a peeled visibility buffer that is seen through those before, and adds it to the
@@ -98,6 +101,7 @@ private:
     void declareCorners(Graph& graph, std::shared_ptr<const RasterView> view, Common& common);
     void bindScene(Graph& graph, Pass& pass, const Common& common);
 
+    Device& device_;
     DeviceScene& scene_;
     TextureFilter filter_;
     Shading shading_;
