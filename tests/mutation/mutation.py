@@ -101,6 +101,10 @@ def run_test(build, test, environment, limit=LIMIT_SECONDS):
     return "failed", case[1] if case else f"exit {done.returncode}"
 
 
+class NotRunnable(Exception):
+    """A test is not built, or does not pass without any fault."""
+
+
 class CleanRuns:
     """What each test does without any fault, kept with the results: each is run once."""
 
@@ -124,23 +128,24 @@ class CleanRuns:
                 state, _ = run_test(build, test, environment())
                 self.known[key] = {"state": state, "seconds": round(time.monotonic() - started, 1)}
         if self.known[key]["state"] != "passed":
-            raise RuntimeError(f"without any fault the test '{key}' is {self.known[key]['state']}")
+            raise NotRunnable(f"without any fault the test '{key}' is {self.known[key]['state']}")
         return max(60.0, 10 * self.known[key]["seconds"])
 
 
-def judge(build, tests, environment, limits):
-    for test, limit in zip(tests, limits):
-        state, detail = run_test(build, test, environment, limit)
+def judge(build, tests, environment, limit_of):
+    """What the first test that notices says: those after it are not run, nor without the fault."""
+    for test in tests:
+        state, detail = run_test(build, test, environment, limit_of(test))
         if state != "passed":
             caught = state in ("failed", "hung")
             return {"state": "caught" if caught else state, "by": test[0], "case": "hung" if state == "hung" else detail}
     return {"state": "survived"}
 
 
-def shader_environment(work, fault):
+def shader_environment(work, fault, name=""):
     """Of a process that takes the fault's file, none if there is no fault, and keeps its compiled kernels apart: faulty
     ones do not push out good ones."""
-    mine = work / f"worker-{threading.current_thread().name.rpartition('_')[2]}"
+    mine = work / f"worker-{name or threading.current_thread().name.rpartition('_')[2]}"
     overlay = mine / "overlay"
     shutil.rmtree(overlay, ignore_errors=True)
     overlay.mkdir(parents=True)
@@ -184,7 +189,7 @@ class EngineCopy:
                 self.fresh = False
             if not all(clean.knows(self.build, test) for test in fault.tests):
                 self.make(targets)
-            limits = [clean.limit(self.build, test, lambda: environment) for test in fault.tests]
+            limits = {" ".join(test): clean.limit(self.build, test, lambda: environment) for test in fault.tests}
             path = self.source / fault.file
             good = path.read_text()
             path.write_text(fault.planted())
@@ -192,7 +197,7 @@ class EngineCopy:
                 made = self.make(targets)
                 if made.returncode != 0:
                     return {"state": "does not compile", "case": made.stdout[-300:]}
-                return judge(self.build, fault.tests, environment, limits)
+                return judge(self.build, fault.tests, environment, lambda test: limits[" ".join(test)])
             finally:
                 path.write_text(good)
 
@@ -245,16 +250,23 @@ def main():
         chosen = [fault for fault in chosen if fault.is_shader()]
     clean = CleanRuns(results)
     engine = EngineCopy(build, work)
-    lock = threading.Lock()
+    lock, stopped = threading.Lock(), set()
     waiting = [fault for fault in chosen if fault.name not in results]
 
     def run_fault(fault):
         started = time.monotonic()
-        if fault.is_shader():
-            limits = [clean.limit(build, test, lambda: shader_environment(work, None)) for test in fault.tests]
-            result = judge(build, fault.tests, shader_environment(work, fault), limits)
-        else:
-            result = engine.run(fault, shader_environment(work, None), clean)
+        try:
+            if fault.is_shader():
+                def limit_of(test):
+                    return clean.limit(build, test, lambda: shader_environment(work, None, "clean"))
+
+                result = judge(build, fault.tests, shader_environment(work, fault), limit_of)
+            else:
+                result = engine.run(fault, shader_environment(work, None), clean)
+        except NotRunnable as error:
+            with lock:
+                stopped.add(str(error))
+            return
         result["seconds"] = round(time.monotonic() - started, 1)
         with lock:
             results[fault.name] = result
@@ -264,12 +276,8 @@ def main():
             print(f"{done}/{len(chosen)} {result['state']:9} {result['seconds']:6.1f} s  {fault.name[:110]}", flush=True)
 
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        try:
-            for finished in concurrent.futures.as_completed([pool.submit(run_fault, fault) for fault in waiting]):
-                finished.result()
-        except RuntimeError as error:
-            pool.shutdown(cancel_futures=True)
-            sys.exit(str(error))
+        for finished in concurrent.futures.as_completed([pool.submit(run_fault, fault) for fault in waiting]):
+            finished.result()
 
     run = [fault for fault in chosen if fault.name in results]
     caught = [fault for fault in run if results[fault.name]["state"] == "caught"]
@@ -286,7 +294,9 @@ def main():
         arguments.report.write_text("\n".join(lines) + "\n")
     for message in stale:
         print(f"  not run, mend the catalogue: {message}")
-    if stale or any(fault.name not in explained for fault in left):
+    for message in sorted(stopped):
+        print(f"  not run: {message}")
+    if stale or stopped or any(fault.name not in explained for fault in left):
         sys.exit(1)
 
 
