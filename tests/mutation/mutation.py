@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Plants small faults in shaders and engine, one at a time, and runs the tests that should notice.
 
-    tests/mutation/mutation.py BUILD [--only PATTERN] [--sample N] [--engine] [--jobs N] [--anew] [--work FOLDER]
-                               [--report FILE]
+    tests/mutation/mutation.py BUILD [--only PATTERN] [--engine] [--jobs N] [--anew] [--work FOLDER] [--report FILE]
+    tests/mutation/mutation.py BUILD --suite [--jobs N]
+    tests/mutation/mutation.py BUILD --check
 
 BUILD is a Release build of this tree. The faults are those of faults.txt. Faults in shaders need no build: a folder that
 holds the faulty file lies over the embedded ones (HELIOGRAPH_SHADER_DIR). Faults in the engine are planted in a copy of
 the tree with a build of its own, only with --engine. A test is run without any fault first: it must pass, and a fault
 that makes it take ten times as long, and no less than a minute, has hung it and counts as caught. Results are kept in
 FOLDER/results.json, and what is there is not run again but with --anew. Exit 1 where a fault survives that
-`survivors.txt` does not explain.
+`survivors.txt` does not explain. The test suite plants the twenty faults of sample.txt (--suite), in which the case that
+notices is named alone; that it passes without the fault is an entry of the suite already.
 """
 import argparse
 import concurrent.futures
@@ -26,7 +28,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 SEPARATOR = "  =>  "
-LIMIT_SECONDS = 900  # of one test without a fault
+LIMIT_SECONDS = 600  # of one test without a fault
 
 
 class Fault:
@@ -211,7 +213,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", default="", help="regular expression of the faults' names")
-    parser.add_argument("--sample", type=int, default=0, help="so many, evenly over the shader faults")
+    parser.add_argument("--suite", action="store_true", help="the faults of sample.txt, anew and without clean runs")
     parser.add_argument("--jobs", type=int, default=1, help="faults in shaders to run side by side")
     parser.add_argument("--anew", action="store_true", help="forget earlier results")
     parser.add_argument("--engine", action="store_true", help="also faults that need a build")
@@ -222,6 +224,10 @@ def main():
     faults = read_catalogue(HERE / "faults.txt")
     names = [fault.name for fault in faults]
     assert len(set(names)) == len(names), "a fault is there twice"
+    sample = read_catalogue(HERE / "sample.txt")
+    for fault in sample:
+        if fault.name not in names:
+            sys.exit(f"sample.txt: faults.txt has no '{fault.name}'")
     stale = []
     for fault in faults:
         try:
@@ -236,16 +242,13 @@ def main():
         print("\n".join([f"{len(faults)} faults whose text is in their file once", *stale]))
         sys.exit(1 if stale else 0)
     build = arguments.build.resolve()
-    work = (arguments.work or build / "mutation").resolve()
+    work = (arguments.work or build / ("mutation-suite" if arguments.suite else "mutation")).resolve()
     work.mkdir(parents=True, exist_ok=True)
     store = work / "results.json"
-    results = json.loads(store.read_text()) if store.exists() and not arguments.anew else {}
+    anew = arguments.anew or arguments.suite
+    results = json.loads(store.read_text()) if store.exists() and not anew else {}
 
-    chosen = [fault for fault in faults if re.search(arguments.only, fault.name)]
-    if arguments.sample:
-        shaders = [fault for fault in chosen if fault.is_shader()]
-        step = len(shaders) / arguments.sample
-        chosen = [shaders[int(i * step)] for i in range(arguments.sample)]
+    chosen = [fault for fault in (sample if arguments.suite else faults) if re.search(arguments.only, fault.name)]
     if not arguments.engine:
         chosen = [fault for fault in chosen if fault.is_shader()]
     clean = CleanRuns(results)
@@ -258,6 +261,8 @@ def main():
         try:
             if fault.is_shader():
                 def limit_of(test):
+                    if arguments.suite:
+                        return LIMIT_SECONDS
                     return clean.limit(build, test, lambda: shader_environment(work, None, "clean"))
 
                 result = judge(build, fault.tests, shader_environment(work, fault), limit_of)
