@@ -269,7 +269,9 @@ check 'and what was measured before the kill was kept' cmp -s <(grep cpu_seconds
 before=$(cat bench.json)
 expect 'a complete bench measures nothing' 0 'wrote bench.json' bench
 check 'and changes nothing' test "$before" = "$(cat bench.json)"
+expect 'and says whether theory is right' 0 'samples\^-[01.0-9]+ .* by theory -1.05 to -0.95: holds' bench
 expect 'a record of other settings is refused' 1 'settings: the record is of' "$program" bench irradiance/independent --json bench.json
+expect 'levels and rays are held to double precision' 0 'mips bytes/passes/mip: .* holds' "$program" bench bytes --quick --json sizes.json
 
 finished=0
 for delay in 1 2 3 4 5 6 8 10 100; do  # tenths of a second

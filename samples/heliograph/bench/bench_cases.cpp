@@ -102,6 +102,17 @@ public:
     void filter(const char* scene, const char* method, TextureFilter filter) {
         raster("filters", scene, method, "ssaa{}", doubling(quick_ ? 4 : 16)).options.textureFilter = filter;
     }
+    void mips(const char* scene) {
+        BenchCase& added = add("mips", scene, "passes/mip");
+        added.unit = "texels a side";
+        added.samples = doubling(quick_ ? 1024 : 4096, 64);
+        added.samples.push_back(quick_ ? 1023 : 4095);  // odd at every level
+    }
+    void traversal(const char* rays, const char* question) {
+        BenchCase& added = add("traversal", rays, question);
+        added.unit = "triangles";
+        added.samples = doubling(quick_ ? 1u << 16 : 1u << 20, 1u << 10);
+    }
     std::vector<BenchCase> take() { return std::move(cases_); }
 
 private:
@@ -130,8 +141,8 @@ std::string BenchCase::truth() const {
 }
 
 BenchSettings benchSettings(bool quick) {
-    if (quick) return {true, {48, 48}, 2, 1024, 12};
-    return {false, {96, 96}, 3, 4096, 32};
+    if (quick) return {true, {48, 48}, 2, 1024, 12, 1u << 14};
+    return {false, {96, 96}, 3, 4096, 32, 1u << 18};
 }
 
 std::vector<BenchCase> benchCases(bool quick) {
@@ -164,6 +175,9 @@ std::vector<BenchCase> benchCases(bool quick) {
     list.filter("terrain", "trilinear", TextureFilter::Trilinear);
     list.filter("terrain", "anisotropic", TextureFilter::Anisotropic);
     list.filter("terrain", "ewa", TextureFilter::Ewa);
+    for (const char* scene : {"bytes", "floats"}) list.mips(scene);
+    for (const char* rays : {"coherent", "scattered"})
+        for (const char* question : {"closest", "any"}) list.traversal(rays, question);
     return list.take();
 }
 

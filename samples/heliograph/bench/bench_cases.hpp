@@ -11,8 +11,8 @@ namespace helio::cli {
 
 /** One method on one scene, measured over a series of samples per pixel. */
 struct BenchCase {
-    std::string
-        group;  ///< "samplers", "lights", "errors", "integrators", "accelerators", "antialiasing", "filters"
+    std::string group;  ///< "samplers", "lights", "errors", "integrators", "accelerators", "antialiasing",
+                        ///< "filters", "mips", "traversal"
     std::string scene;   ///< as benchScene() knows it
     std::string method;  ///< one of its group
     RenderOptions options;
@@ -23,7 +23,9 @@ struct BenchCase {
      * samples where `squared`. */
     std::string pattern;
     bool squared = false;
-    std::vector<std::uint32_t> samples;  ///< per pixel, ascending
+    std::vector<std::uint32_t> samples;  ///< per pixel, ascending; of groups "mips", "traversal" sizes
+    /** What `samples` counts where it is no samples: "texels a side", "triangles"; see bench_sizes.hpp. */
+    std::string unit;
     /** Between which the exponent of relMSE over samples is by theory; nothing where it says little. */
     struct Order {
         double low, high;
@@ -42,6 +44,7 @@ struct BenchSettings {
     std::uint32_t repeats;              ///< renders of a point, each with its own seed
     std::uint32_t reference;            ///< samples of each half of a reference of paths
     std::uint32_t referenceSide;        ///< and of one of the rasterizer, side by side
+    std::uint32_t rays;                 ///< of a traversal
 };
 BenchSettings benchSettings(bool quick);
 

@@ -6,6 +6,7 @@
 #include "bench_page.hpp"
 #include "bench_record.hpp"
 #include "bench_runner.hpp"
+#include "bench_verdict.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 
 namespace helio::cli {
@@ -30,36 +30,21 @@ struct BenchArguments {
 
 void printTable(const BenchRecord& record, const std::vector<BenchCase>& cases) {
     printLine("{:<12} {:<13} {:<12} {:>7} {:>10} {:>9} {:>16} {:>11} {:>9}", "scene", "group", "method",
-              "samples", "relMSE", "CPU s", "order", "1/(e CPUs)", "unsteady");
+              "last", "relMSE", "CPU s", "order", "1/(e CPUs)", "unsteady");
     for (const BenchCase& each : cases) {
         const std::vector<SeriesPoint> series = record.series(each);
         if (series.empty()) continue;
-        const SeriesFit fit = fitSeries(series);
         const SeriesPoint& last = series.back();
+        if (!each.unit.empty()) {
+            printLine("{:<12} {:<13} {:<12} {:>7} {:>10.3g} {:>9.4f}   ({})", each.scene, each.group,
+                      each.method, last.samples, last.relmse, last.cpuSeconds, each.unit);
+            continue;
+        }
+        const SeriesFit fit = fitSeries(series);
         printLine("{:<12} {:<13} {:<12} {:>7} {:>10.3g} {:>9.4f} {:>8.3f} +- {:.3f} {:>11.4g} {:>7.1f} %",
                   each.scene, each.group, each.method, last.samples, last.relmse, last.cpuSeconds, fit.order,
                   fit.orderError, fit.efficiency, 100 * fit.unsteadiness);
     }
-}
-
-/** The series with pictures that are not finite, or whose error does not fall as theory says, a phrase each.
- */
-std::vector<std::string> unexpected(const BenchRecord& record, const std::vector<BenchCase>& cases) {
-    std::vector<std::string> phrases;
-    for (const BenchCase& each : cases) {
-        const std::vector<SeriesPoint> series = record.series(each);
-        if (std::ranges::any_of(series,
-                                [](const SeriesPoint& point) { return !std::isfinite(point.relmse); }))
-            phrases.push_back(fmt::format("a picture of {}/{} is not finite", each.scene, each.method));
-        if (!each.order) continue;
-        const SeriesFit fit = fitSeries(series);
-        if (fit.order < each.order->low || fit.order > each.order->high) {
-            phrases.push_back(fmt::format("the error of {}/{} falls as samples^{:.3f}, outside {} to {}",
-                                          each.scene, each.method, fit.order, each.order->low,
-                                          each.order->high));
-        }
-    }
-    return phrases;
 }
 
 int bench(const BenchArguments& arguments) {
@@ -88,7 +73,11 @@ int bench(const BenchArguments& arguments) {
         printLine("wrote {}", record.csvFile().string());
         if (!arguments.html.empty()) printLine("wrote {}", arguments.html);
     }
-    const std::vector<std::string> failures = unexpected(record, cases);
+    std::vector<std::string> failures;
+    for (const Verdict& verdict : verdicts(record, cases)) {
+        if (!arguments.quiet) printLine("{}", verdict.text);
+        if (verdict.isFailure) failures.push_back(verdict.text);
+    }
     if (failures.empty()) return Done;
     throw InputError(arguments.json, "", fmt::format("{}", fmt::join(failures, ", ")), "");
 }

@@ -93,6 +93,7 @@ SeriesFit fitSeries(std::span<const SeriesPoint> points) {
     fit.orderError = line.slopeError;
     if (last > 0) fit.efficiency = 1 / last;
     double mean = 0;
+    fit.steadyPoints = steady.size();
     for (const double value : steady) mean += value / double(steady.size());
     for (const double value : steady)
         fit.unsteadiness = std::max(fit.unsteadiness, std::abs(value / mean - 1));

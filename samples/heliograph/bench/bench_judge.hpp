@@ -46,7 +46,8 @@ struct SeriesFit {
      * relative: 0 for a method whose error falls as one over the root of the time, and where there is no such
      * point. */
     double unsteadiness = 0;
-    double efficiency = 0;  ///< 1 / (relMSE x CPU s) at the last point
+    std::size_t steadyPoints = 0;  ///< those of 0.02 s and more
+    double efficiency = 0;         ///< 1 / (relMSE x CPU s) at the last point
 };
 /** Points whose error is not positive are left out; a fit of fewer than three is all zero. */
 SeriesFit fitSeries(std::span<const SeriesPoint> points);

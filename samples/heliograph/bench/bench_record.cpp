@@ -61,9 +61,9 @@ Json read(const std::filesystem::path& file) {
     return json;
 }
 
-constexpr const char* kColumns[] = {"samples",       "seed", "seconds", "cpu_seconds",
-                                    "setup_seconds", "rays", "mse",     "relmse",
-                                    "estimate",      "low",  "high",    "reliable"};
+constexpr const char* kColumns[] = {"samples", "seed",     "seconds", "cpu_seconds", "setup_seconds",
+                                    "rays",    "mse",      "relmse",  "estimate",    "low",
+                                    "high",    "reliable", "items"};
 
 }  // namespace
 
@@ -114,6 +114,7 @@ void BenchRecord::add(const BenchCase& measured, const Json& point) {
                                    {"biased", measured.biased},
                                    {"points", Json::array()}});
         found = &json_["series"].back();
+        if (!measured.unit.empty()) (*found)["unit"] = measured.unit;
     }
     (*found)["points"].push_back(point);
     write();
@@ -194,7 +195,7 @@ void BenchRecord::write() const {
 void BenchRecord::finish(const std::vector<BenchCase>& cases) {
     for (const BenchCase& each : cases) {
         Json* found = find(each);
-        if (found == nullptr) continue;
+        if (found == nullptr || !each.unit.empty()) continue;
         const SeriesFit fit = fitSeries(series(each));
         (*found)["fit"] = {{"order", fit.order},
                            {"order_error", fit.orderError},

@@ -1,6 +1,7 @@
 #include "bench_runner.hpp"
 
 #include "bench_scenes.hpp"
+#include "bench_sizes.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -69,15 +70,21 @@ bool BenchRunner::run(const std::vector<BenchCase>& cases) {
         for (const std::uint32_t samples : measured.samples) {
             for (std::uint32_t repeat = 0; repeat < settings_.repeats; ++repeat) {
                 if (record_.has(measured, samples, repeat)) continue;
+                if (repeat == 0) {
+                    callbacks_.report(fmt::format("{}/{} {} {}, {} {}", i + 1, cases.size(), measured.scene,
+                                                  measured.method, samples,
+                                                  measured.unit.empty() ? "samples" : measured.unit));
+                }
+                if (!measured.unit.empty()) {
+                    if (callbacks_.interrupted()) return false;
+                    measureSize(measured, samples, repeat);
+                    continue;
+                }
                 if (loaded != measured.scene) {
                     scene = benchScene(measured.scene);
                     loaded = measured.scene;
                 }
                 if (!makeTruth(measured, scene)) return false;
-                if (repeat == 0) {
-                    callbacks_.report(fmt::format("{}/{} {} {}, {} samples", i + 1, cases.size(),
-                                                  measured.scene, measured.method, samples));
-                }
                 if (!measure(measured, scene, samples, repeat)) return false;
             }
         }
@@ -140,6 +147,24 @@ bool BenchRunner::makeTruth(const BenchCase& measured, const Scene& scene) {
     record_.setTruth(key, description);
     truthKey_ = key;
     return true;
+}
+
+void BenchRunner::measureSize(const BenchCase& measured, std::uint32_t size, std::uint32_t repeat) {
+    Device& device = renderer_.device();
+    const SizeResult result = measured.group == "mips"
+                                  ? measureMips(device, measured.scene == "floats", size, repeat)
+                                  : measureTraversal(device,
+                                                     {.coherent = measured.scene == "coherent",
+                                                      .closest = measured.method == "closest",
+                                                      .count = settings_.rays},
+                                                     size, repeat);
+    record_.add(measured, {{"samples", size},
+                           {"seed", repeat},
+                           {"seconds", result.seconds},
+                           {"cpu_seconds", result.cpuSeconds},
+                           {"items", result.items},
+                           {"mse", result.mse},
+                           {"relmse", result.relmse}});
 }
 
 bool BenchRunner::measure(const BenchCase& measured, const Scene& scene, std::uint32_t samples,

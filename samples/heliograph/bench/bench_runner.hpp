@@ -26,6 +26,8 @@ private:
     /** Nothing where it was interrupted. */
     std::optional<RenderResult> render(const Scene& scene, RenderOptions options);
     bool makeTruth(const BenchCase& measured, const Scene& scene);
+    /** A point of a series over sizes. */
+    void measureSize(const BenchCase& measured, std::uint32_t size, std::uint32_t repeat);
     bool measure(const BenchCase& measured, const Scene& scene, std::uint32_t samples, std::uint32_t repeat);
 
     Renderer& renderer_;

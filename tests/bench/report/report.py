@@ -25,6 +25,8 @@ GROUPS = {
     "accelerators": "Accelerators",
     "antialiasing": "The rasterizer's antialiasing",
     "filters": "Texture filters",
+    "mips": "Mip generation",
+    "traversal": "Traversal",
 }
 STYLE = """
 :root { color-scheme: light; }
@@ -51,7 +53,7 @@ def points_of(series):
         errors = [render["relmse"] for render in renders]
         mean = sum(errors) / len(errors)
         rows.append({"samples": samples, "relmse": mean, "low": min(errors), "high": max(errors),
-                     "cpu": min(render["cpu_seconds"] for render in renders)})
+                     "cpu": min(render["cpu_seconds"] for render in renders), "items": renders[0].get("items")})
     return rows
 
 
@@ -71,8 +73,12 @@ def table_rows(record):
     rows = []
     for series in record["series"]:
         points = points_of(series)
-        baseline = first.setdefault((series["truth"], series["group"] == "filters"), points)
         last = points[-1]
+        if "unit" in series:
+            rows.append([series["scene"], series["group"], series["method"], f"{last['samples']} {series['unit']}",
+                         f"{last['relmse']:.3g}", f"{last['cpu']:.3g}", "", ""])
+            continue
+        baseline = first.setdefault((series["truth"], series["group"] == "filters"), points)
         fit = series.get("fit", {})
         # At the least error that both reach.
         common = max(last["relmse"], baseline[-1]["relmse"])
@@ -120,6 +126,34 @@ def plot(series_list, title):
     picture.savefig(data, format="png", dpi=110)
     plt.close(picture)
     return data.getvalue() if drawn else None
+
+
+def plot_sizes(series_list, title):
+    """CPU time of one texel or ray against the size, and the error, as a PNG."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    picture, (time_axes, error_axes) = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    for i, series in enumerate(series_list):
+        rows = points_of(series)
+        style = dict(marker="osD^"[i % 4], markersize=4, linewidth=1.4, color=plt.cm.tab10(i % 10),
+                     label=f"{series['scene']}, {series['method']}")
+        time_axes.plot([row["samples"] for row in rows], [row["cpu"] / row["items"] * 1e9 for row in rows], **style)
+        error_axes.plot([row["samples"] for row in rows], [max(row["relmse"], 1e-18) for row in rows], **style)
+    time_axes.set_ylabel("CPU time of each texel that is made, or ray, ns")
+    error_axes.set_ylabel("relMSE against double precision (none: 1e-18)")
+    error_axes.axhline(1e-9, color="#8c959f", linewidth=.8, linestyle=":")
+    for axes in (time_axes, error_axes):
+        axes.set_xlabel(series_list[0]["unit"])
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        axes.grid(True, which="major", color="#d0d7de", linewidth=.6)
+    error_axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    picture.suptitle(title, fontsize=11)
+    data = io.BytesIO()
+    picture.savefig(data, format="png", dpi=110)
+    plt.close(picture)
+    return data.getvalue()
 
 
 def image(data, alternative, css=""):
@@ -175,6 +209,11 @@ def page(record, folder):
         by_group[series["group"]][series["truth"]].append(series)
     for group, truths in by_group.items():
         parts.append(f"<h2>{html.escape(GROUPS.get(group, group))}</h2>")
+        of_sizes = [series for series_list in truths.values() for series in series_list if "unit" in series]
+        if of_sizes:
+            drawing = plot_sizes(of_sizes, f"{GROUPS.get(group, group)}: cost and error over sizes")
+            parts.append(image(drawing, group, 'class="plot"'))
+            continue
         for truth, series_list in truths.items():
             # The scene's first series beside those that are compared with it.
             shown = series_list if firsts[truth] in series_list else [firsts[truth]] + series_list
