@@ -199,6 +199,100 @@ Scene lacquer() {
     return scene;
 }
 
+/** A floor and a wall, and lamps from a twentieth of a pixel to two across of a 64x64 picture. */
+Scene stars() {
+    SceneBuilder builder;
+    floorUnder(builder, 4, builder.material({0.45f, 0.4f, 0.35f}));
+    builder.quad({-4, 0, -3}, {4, 0, -3}, {4, 5, -3}, {-4, 5, -3}, builder.material(glm::vec3(0.3f)));
+    for (int i = 0; i < 24; ++i) {
+        const float size = 0.003f * std::pow(1.18f, float(i));
+        const glm::vec3 at(-2.3f + 0.2f * float(i), 0.5f + 0.09f * float(i * 7 % 24),
+                           0.3f * float(i % 5) - 1);
+        builder.sphere(
+            at, size, 2, false,
+            builder.material(glm::vec3(0), glm::vec3(0.1f / (size * size), 0.08f / (size * size), 0.1f)));
+    }
+    builder.camera({0, 1.5f, 5}, {0, 1.2f, 0}, 0.9f);
+    return builder.scene;
+}
+
+Scene sunlit() {
+    SceneBuilder builder;
+    Scene& scene = builder.scene;
+    floorUnder(builder, 4, builder.material({0.5f, 0.45f, 0.3f}));
+    block(builder, {-1.3f, 0, 0.2f}, 0.8f, 1.6f, builder.material(glm::vec3(0.7f)));
+    const int paint = builder.material({0.1f, 0.3f, 0.6f});
+    scene.materials[std::size_t(paint)].specular = 1;
+    scene.materials[std::size_t(paint)].roughness = 0.35f;
+    builder.sphere({0.8f, 0.7f, 0}, 0.7f, 4, false, paint);
+    const int sky = addImage(scene, 128, 64, [](float u, float v) {
+        const bool sun = std::abs(u - 0.62f) < 0.008f && std::abs(v - 0.3f) < 0.016f;
+        return sun ? glm::vec3(4000, 3600, 3000) : glm::vec3(0.3f, 0.5f, 0.9f) * (v < 0.5f ? 1.0f : 0.3f);
+    });
+    scene.environment = Environment{glm::vec3(1), sky, {1, 0, 0, 0}};
+    builder.camera({0.4f, 1.7f, 4.5f}, {0, 0.6f, 0}, 0.8f);
+    return scene;
+}
+
+Scene quilt() {
+    SceneBuilder builder;
+    Scene& scene = builder.scene;
+    const int cloth = builder.material(glm::vec3(1));
+    floorUnder(builder, 6, cloth);
+    scene.meshes.back().primitives[0].texcoords = {{{0, 0}, {20, 0}, {20, 20}, {0, 0}, {20, 20}, {0, 20}}};
+    scene.textures.push_back({.name = "", .image = addImage(scene, 64, 64, [](float u, float v) {
+                                              const int x = int(64 * u), y = int(64 * v);
+                                              const bool thread = (x * 7 + y * 13) % 5 == 0 || x % 16 == 0;
+                                              return thread ? glm::vec3(0.95f, 0.9f, 0.8f)
+                                                            : glm::vec3(0.03f + 0.3f * u, 0.05f, 0.2f * v);
+                                          })});
+    scene.materials[std::size_t(cloth)].baseColorTexture.texture = 0;
+    builder.sphere({0.2f, 0.6f, 0.4f}, 0.6f, 4, false, builder.material({0.6f, 0.6f, 0.3f}));
+    const int lamp = builder.material(glm::vec3(0), {20, 19, 17}, true);
+    builder.quad({-1.5f, 3.5f, -1}, {-0.7f, 3.5f, -1}, {-0.7f, 3.5f, -0.4f}, {-1.5f, 3.5f, -0.4f}, lamp);
+    builder.camera({0.3f, 1.6f, 4.5f}, {0, 0.3f, 0}, 0.8f);
+    return scene;
+}
+
+Scene workshop() {
+    SceneBuilder builder;
+    Scene& scene = builder.scene;
+    builder.room({-1.5f, 0, -1.5f}, {1.5f, 2.2f, 2.6f},
+                 {builder.material({0.5f, 0.3f, 0.2f}), builder.material({0.2f, 0.4f, 0.5f}),
+                  builder.material(glm::vec3(0.4f)), builder.material(glm::vec3(0.6f)),
+                  builder.material(glm::vec3(0.55f)), builder.material(glm::vec3(0.6f))});
+    for (int i = 0; i < 3; ++i) {
+        const int metal = builder.material({0.9f, 0.8f - 0.2f * float(i), 0.6f});
+        scene.materials[std::size_t(metal)].metallic = 1;
+        scene.materials[std::size_t(metal)].specular = 1;
+        scene.materials[std::size_t(metal)].roughness = 0.15f + 0.15f * float(i);
+        builder.sphere({-0.9f + 0.9f * float(i), 0.4f, -0.4f}, 0.4f, 4, false, metal);
+    }
+    const int lamp = builder.material(glm::vec3(0), {90, 80, 60}, true);
+    builder.quad({-0.12f, 2.1f, 0}, {0.12f, 2.1f, 0}, {0.12f, 2.1f, 0.24f}, {-0.12f, 2.1f, 0.24f}, lamp);
+    builder.camera({0, 1.1f, 2.4f}, {0, 0.7f, -1}, 0.9f);
+    return scene;
+}
+
+Scene aquarium() {
+    SceneBuilder builder;
+    Scene& scene = builder.scene;
+    builder.room({-1.5f, 0, -1.5f}, {1.5f, 2.2f, 2.6f},
+                 {builder.material({0.6f, 0.5f, 0.4f}), builder.material({0.3f, 0.5f, 0.5f}),
+                  builder.material(glm::vec3(0.6f)), builder.material(glm::vec3(0.6f)),
+                  builder.material(glm::vec3(0.6f)), builder.material(glm::vec3(0.6f))});
+    const int glass = builder.material(glm::vec3(1));
+    Scattering scattering;
+    scattering.model = Scattering::Model::Dielectric;
+    scene.materials[std::size_t(glass)].scattering = scattering;
+    builder.sphere({-0.3f, 0.6f, -0.2f}, 0.5f, 4, false, glass);
+    const int lamp = builder.material(glm::vec3(0), {12, 12, 11}, true);
+    builder.quad({-0.6f, 2.15f, -0.6f}, {0.6f, 2.15f, -0.6f}, {0.6f, 2.15f, 0.6f}, {-0.6f, 2.15f, 0.6f},
+                 lamp);
+    builder.camera({0, 1.1f, 2.4f}, {0, 0.7f, -1}, 0.9f);
+    return scene;
+}
+
 }  // namespace
 
 const std::map<std::string, Scene (*)()>& heldOutScenes() {
@@ -210,7 +304,12 @@ const std::map<std::string, Scene (*)()>& heldOutScenes() {
                                                               {"pane", pane},
                                                               {"hall", [] { return cellar(false); }},
                                                               {"cellar", [] { return cellar(true); }},
-                                                              {"lacquer", lacquer}};
+                                                              {"lacquer", lacquer},
+                                                              {"stars", stars},
+                                                              {"sunlit", sunlit},
+                                                              {"quilt", quilt},
+                                                              {"workshop", workshop},
+                                                              {"aquarium", aquarium}};
     return scenes;
 }
 

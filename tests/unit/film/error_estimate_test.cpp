@@ -174,6 +174,31 @@ TEST(ErrorEstimate, OneFireflyIsNotReliableAndDoesNotHideItself) {
     EXPECT_NEAR(after.relmse - before.relmse, 1e4 / 0.26 / 4096, 0.2);
 }
 
+TEST(ErrorEstimate, LampsBelowAPixelAreNotReliable) {
+    // Five lamps of 160 that fill 0.3 of a pixel and 0.005 of the one beside it, which most films do not see.
+    const Truth truth = [](std::uint32_t x, std::uint32_t y) {
+        return y % 10 == 5 && x % 40 == 20 ? 48.0 : y % 10 == 5 && x % 40 == 21 ? 1.2 : 0.4;
+    };
+    const Noise lamps = [](Random& random, double mean) {
+        const double share = (mean - 0.4) / 160;
+        return 0.4 * (1 + 0.1 * std::normal_distribution<>()(random)) +
+               (std::uniform_real_distribution<>()(random) < share ? 160 : 0);
+    };
+    int covered = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Synthetic s = synthesize(48, 64, truth, lamps, seed);
+        const ErrorEstimate e = estimateError(s.film);
+        EXPECT_FALSE(e.reliable);
+        covered += e.low <= s.relmse && s.relmse <= e.high;
+    }
+    EXPECT_LT(covered, 19);  // there is something to warn of
+    // The same without a pixel beside that may hold more: each pixel's samples are alike.
+    const Noise plain = [](Random& random, double mean) {
+        return mean * (1 + 0.1 * std::normal_distribution<>()(random));
+    };
+    EXPECT_TRUE(estimateError(synthesize(48, 64, flat, plain, 1).film).reliable);
+}
+
 TEST(ErrorEstimate, NoiselessIsZeroAndOneSampleGuesses) {
     const Noise none = [](Random&, double mean) { return mean; };
     const ErrorEstimate zero = estimateError(synthesize(16, 8, ramp, none, 1).film);
