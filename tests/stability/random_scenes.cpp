@@ -115,10 +115,37 @@ private:
         }
     }
 
-    void mesh() {
+    /** A shape of its own node, far smaller than the rest or far larger. */
+    void shape() {
         Primitive p;
         p.material = pick(int(scene_.materials.size()));
-        const int kind = pick(4);
+        const float size = float(scale_ * std::pow(10.0, 1 - 5 * uniform()));
+        Shape s;
+        s.kind = Shape::Kind(pick(5));
+        s.radius = size;
+        s.tubeRadius = size * (0.0105f + 0.979f * parameter());
+        s.width = size;
+        s.height = pick(3) == 0 ? size * float(std::pow(10.0, -6 * uniform())) : size;
+        p.shape = s;
+        Node node;
+        node.mesh = int(scene_.meshes.size());
+        node.translation = glm::vec3(offset_ + scale_ * (pick(3) == 0 ? glm::round(point()) : point()));
+        if (pick(2) == 0)
+            node.rotation = glm::quat(glm::rotation(glm::vec3(0, 0, 1), glm::vec3(direction())));
+        if (pick(5) == 0) node.scale.x = node.scale.y = node.scale.z = -1;
+        scene_.meshes.push_back({"shape", {std::move(p)}});
+        const int copies = 1 + (pick(6) == 0 ? 1 : 0);  // a second one coincides
+        for (int i = 0; i < copies; ++i) {
+            scene_.roots.push_back(int(scene_.nodes.size()));
+            scene_.nodes.push_back(node);
+        }
+    }
+
+    void mesh() {
+        const int kind = pick(5);
+        if (kind == 4) return shape();
+        Primitive p;
+        p.material = pick(int(scene_.materials.size()));
         if (kind == 0) {  // a soup
             const int count = 1 + pick(pick(2) == 0 ? 20 : 300);
             for (int i = 0; i < count; ++i) {

@@ -40,7 +40,7 @@ struct Soak {
 RenderOptions optionsOf(std::uint64_t number) {
     RenderOptions options;
     options.size = {64, 64};
-    options.samples = 64;
+    options.samples = 512;
     options.seed = std::uint32_t(number);
     options.maxDepth = 64;
     constexpr std::array lights{LightChoice::Adaptive, LightChoice::Power, LightChoice::Uniform};
