@@ -70,7 +70,11 @@ bool notifySample(RenderJob& job, std::size_t done, std::size_t all) {
 }  // namespace
 
 PackOptions rasterPackOptions() {
-    return {.tree = false, .sampleSurfaces = true, .shapesAsTriangles = true, .diffuseEnvironment = true};
+    return {.tree = false,
+            .sampleSurfaces = true,
+            .shapesAsTriangles = true,
+            .occlusion = true,
+            .diffuseEnvironment = true};
 }
 
 RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterView& view,
@@ -101,7 +105,12 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
         makeLayers(device);
         return;
     }
-    if (!sampled || auxiliary_) makeCentrePlan(device);
+    if (!sampled || auxiliary_) {
+        if (shade_.seesThrough())
+            hitLayers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, view_);
+        else
+            makeCentrePlan(device);
+    }
     if (kind_ == Kind::Supersampling) makeSupersamplePlan(device);
     if (kind_ == Kind::Multisampling) makeMultisamplePlan(device);
 }
@@ -119,12 +128,7 @@ bool RasterSession::fits(const RasterView& view, const RenderOptions& options,
 }
 
 void RasterSession::makeShadows(Device& device) {
-    if (!shade_.shadows().needed()) return;
-    Graph graph(device);
-    const RasterPipeline casters(device, {.cullBackFaces = false});  // light meets back faces too
-    shade_.shadows().declare(graph, casters, shade_.triangles(graph));
-    Plan plan = graph.compile();
-    plan.wait(plan.execute());
+    openTexels_ = drawShadowMaps(device, shade_);
 }
 
 void RasterSession::makeCentrePlan(Device& device) {
@@ -156,6 +160,16 @@ void RasterSession::makeSupersamplePlan(Device& device) {
     samplePlan_.wait(samplePlan_.execute());
 }
 
+/** The keys of all samples, as declareMultisample takes them. */
+void RasterSession::declareSamples(Graph& graph, Buffer visibility, std::uint64_t stride) {
+    const Buffer counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
+    graph.fill("raster.clear", visibility, 0);
+    graph.fill("raster.clearCounters", counters, 0);
+    for (std::size_t k = 0; k < sampleCount_; ++k)
+        raster_.declare(graph, shade_.triangles(graph), sampleViews_[k], {visibility, k * stride, counters});
+    counters_ = graph.readback<RasterCounters>(counters);
+}
+
 void RasterSession::makeMultisamplePlan(Device& device) {
     const std::uint64_t stride = rasterStride(size_[0], size_[1]), bytes = stride * sampleCount_;
     if (bytes > device.info().maxStorageBufferRange)
@@ -164,21 +178,23 @@ void RasterSession::makeMultisamplePlan(Device& device) {
                                      sampleCount_, size_[0], size_[1]),
                          fmt::format("choose fewer samples or at most {} pixels",
                                      device.info().maxStorageBufferRange / (8 * sampleCount_)));
-    Graph graph(device);
-    const Buffer visibility = graph.buffer("raster.visibility", {bytes}),
-                 counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
-    graph.fill("raster.clear", visibility, 0);
-    graph.fill("raster.clearCounters", counters, 0);
-    for (std::size_t k = 0; k < sampleCount_; ++k) {
-        sampleViews_.push_back(std::make_shared<RasterView>(*view_));
-        raster_.declare(graph, shade_.triangles(graph), sampleViews_[k], {visibility, k * stride, counters});
+    if (shade_.masks()) {
+        sampleKeys_.emplace(device, "raster.sampleKeys", bytes);
+        maskView_ = std::make_shared<RasterView>(*view_);
+        masks_ = std::make_unique<AlphaMasks>(device, raster_, shade_, *sampleKeys_, maskView_, filter_);
     }
+    Graph graph(device);
+    const Buffer visibility =
+        masks_ ? graph.import(*sampleKeys_) : graph.buffer("raster.visibility", {bytes});
+    for (std::size_t k = 0; k < sampleCount_; ++k)
+        sampleViews_.push_back(std::make_shared<RasterView>(*view_));
+    if (!masks_) declareSamples(graph, visibility, stride);
     const MultisampleOutput shaded =
         shade_.declareMultisample(graph, visibility, std::uint32_t(sampleCount_), view_);
     sampleColor_ = graph.readback<float>(shaded.color);
     shadings_ = graph.readback<std::uint32_t>(shaded.shadings);
-    counters_ = graph.readback<RasterCounters>(counters);
     samplePlan_ = graph.compile({.executionsInFlight = 1});
+    if (masks_) masks_->draw(0);
     samplePlan_.wait(samplePlan_.execute());
 }
 
@@ -261,6 +277,19 @@ void RasterSession::drawLayers(const RasterView& view, RenderJob& job) {
     shaded_ += std::uint64_t(size_[0]) * size_[1] * drawing.layers;
 }
 
+void RasterSession::drawMaskedSamples(RenderJob& job) {
+    const std::uint64_t keys = rasterStride(size_[0], size_[1]) / 8;
+    drawn_ = {};
+    for (std::size_t k = 0; k < sampleCount_; ++k) {
+        *maskView_ = *sampleViews_[k];
+        const AlphaLayers::Drawing drawing =
+            masks_->draw(k * keys, [&](const std::vector<PassTiming>& times) { job.addTimings(times); });
+        drawn_.layers = std::max(drawn_.layers, drawing.layers);
+        drawn_.open = std::max(drawn_.open, drawing.open);
+        for (const RasterCounters& counters : drawing.counters) addWork(counters);
+    }
+}
+
 bool RasterSession::layeredPicture(const RasterView& view, const std::optional<ThinLens>& lens,
                                    RenderJob& job, std::vector<float>& color) {
     drawn_ = {};
@@ -315,10 +344,11 @@ bool RasterSession::picture(const RasterView& view, const std::optional<ThinLens
         return true;
     }
     for (std::size_t k = 0; k < sampleViews_.size(); ++k) *sampleViews_[k] = shiftedView(view, positions[k]);
+    if (masks_) drawMaskedSamples(job);
     Plan& plan = kind_ == Kind::Multisampling ? samplePlan_ : plan_;
     const Execution done = plan.execute();
     color = (kind_ == Kind::Multisampling ? sampleColor_ : color_).wait(done);
-    addWork(counters_.wait(done).at(0));
+    if (!masks_) addWork(counters_.wait(done).at(0));
     shaded_ = std::uint64_t(size_[0]) * size_[1];
     if (kind_ == Kind::Multisampling) {
         const std::vector<std::uint32_t> shadings = shadings_.wait(done);
@@ -338,7 +368,7 @@ void RasterSession::addWork(const RasterCounters& counters) {
 RasterSession::Auxiliary RasterSession::auxiliary(const RasterView& view, RenderJob& job) {
     const bool sampled = kind_ != Kind::None && kind_ != Kind::Fxaa;
     Auxiliary hits;
-    if (layers_) {
+    if (layers_ || hitLayers_) {
         if (hitLayers_)
             hitLayers_->draw();
         else if (sampled)
@@ -385,7 +415,7 @@ void RasterSession::noteCounters(RenderResult& result) const {
                        {"tile_entries", work_.entries},
                        {"tile_triangles_visited", work_.tileVisited},
                        {"pixels_shaded", shaded_}};
-    if (layers_) result.counters.emplace_back("alpha_layers", drawn_.layers);
+    if (layers_ || masks_) result.counters.emplace_back("alpha_layers", drawn_.layers);
     if (corners_ > 0) result.counters.emplace_back("corners_shaded", corners_);
 }
 
@@ -422,9 +452,13 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
         result.warnings.push_back(fmt::format("{} pixels have more than {} layers that let light through",
                                               drawn_.open, AlphaLayers::kMaxLayers));
     }
-    if (shade_.seesThrough() && !layers_)
-        result.skipped.emplace_back("alpha masks and blending",
-                                    "multisampling draws every surface as opaque; supersampling shows them");
+    if (openTexels_ > 0)
+        result.warnings.push_back(
+            fmt::format("{} texels of shadow maps have more than {} masked surfaces one behind another",
+                        openTexels_, AlphaLayers::kMaxLayers));
+    if (shade_.blends() && !layers_)
+        result.skipped.emplace_back(
+            "blending", "multisampling draws blended surfaces as opaque; supersampling shows them");
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
     if (lens && kind_ != Kind::Supersampling) {

@@ -5,7 +5,7 @@
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/render_job.hpp"
-#include "passes/shade/alpha_layers.hpp"
+#include "passes/shade/alpha_masks.hpp"
 #include "passes/shade/shade.hpp"
 #include "passes/temporal/temporal.hpp"
 
@@ -49,6 +49,7 @@ private:
     void makeShadows(Device& device);
     void makeCentrePlan(Device& device);
     void makeSupersamplePlan(Device& device);
+    void declareSamples(Graph& graph, Buffer visibility, std::uint64_t stride);
     void makeMultisamplePlan(Device& device);
     void makeTemporalPlan(Device& device, const TemporalStep& step);
     /** Draws a frame; whether it is the last. */
@@ -57,6 +58,7 @@ private:
     /** Instead of the other plans but multisampling's, where surfaces let light through. */
     void makeLayers(Device& device);
     void drawLayers(const RasterView& view, RenderJob& job);
+    void drawMaskedSamples(RenderJob& job);
     bool layeredPicture(const RasterView& view, const std::optional<ThinLens>& lens, RenderJob& job,
                         std::vector<float>& color);
     /** The picture, vec4 a pixel; false where the application cancels. */
@@ -95,12 +97,17 @@ private:
     std::shared_ptr<AddWeight> weight_ = std::make_shared<AddWeight>();
     std::optional<DeviceBuffer> sum_;
     Readback<float> sampleColor_;
+    /** Multisampling with alpha masks: the samples' keys, found before they are shaded. */
+    std::optional<DeviceBuffer> sampleKeys_;
+    std::shared_ptr<RasterView> maskView_;
+    std::unique_ptr<AlphaMasks> masks_;
     Readback<std::uint32_t> shadings_;
     std::shared_ptr<RasterView> layerView_;
     std::unique_ptr<AlphaLayers> layers_;
     std::shared_ptr<TemporalHistory> history_;
     std::unique_ptr<AlphaLayers> hitLayers_;  ///< of the picture's pixels, where frames have fewer
     AlphaLayers::Drawing drawn_;              ///< most layers and open pixels of this picture
+    std::uint64_t openTexels_ = 0;            ///< of shadow maps
     RasterCounters work_;
     std::uint64_t shaded_ = 0, corners_ = 0;
 };

@@ -22,7 +22,8 @@ enum Row : std::uint32_t {
     kAnisotropyRow = 34,
     kIridescenceRow = 36,
     kIridescenceThicknessRow = 38,
-    kHeightRow = 43
+    kHeightRow = 43,
+    kOcclusionRow = 47
 };
 
 /** SMOOTH_ALPHA of shaders/scattering/scatter.glsl: a narrower lobe is a mirror's. */
@@ -113,7 +114,7 @@ bool hasWideLobes(const Material& m) {
     return hasRoughFacets(m) || !(metal || glass) || hasSheen(m) || (m.clearcoat > 0.0f && !smoothCoat);
 }
 
-std::vector<SampledTexture> sampledTextures(const Material& m) {
+std::vector<SampledTexture> sampledTextures(const Material& m, bool occlusion) {
     std::vector<SampledTexture> result;
     const auto add = [&](const TextureUse& use, std::uint32_t row, bool color, bool needed) {
         if (use && needed) result.push_back({&use, row, color});
@@ -135,12 +136,13 @@ std::vector<SampledTexture> sampledTextures(const Material& m) {
     add(m.anisotropyTexture, kAnisotropyRow, false, bits & kAnisotropyTextureFeature);
     add(m.iridescenceTexture, kIridescenceRow, false, bits & kIridescenceTextureFeature);
     add(m.iridescenceThicknessTexture, kIridescenceThicknessRow, false, bits & kIridescenceTextureFeature);
+    add(m.occlusionTexture, kOcclusionRow, false, occlusion && m.occlusionStrength > 0.0f && !m.unlit);
     return result;
 }
 
-std::array<int, 2> texcoordSets(const Material& material) {
+std::array<int, 2> texcoordSets(const Material& material, bool occlusion) {
     std::array<int, 2> sets{-1, -1};
-    for (const SampledTexture& texture : sampledTextures(material)) {
+    for (const SampledTexture& texture : sampledTextures(material, occlusion)) {
         const int set = texture.use->texcoord;
         if (sets[0] < 0) sets[0] = set;
         if (set != sets[0] && sets[1] < 0) sets[1] = set;
@@ -152,9 +154,9 @@ std::uint32_t texcoordSlot(const std::array<int, 2>& sets, const TextureUse& use
     return use.texcoord == sets[1] ? 1u : 0u;
 }
 
-bool namesTooManySets(const Material& material) {
-    const std::array<int, 2> sets = texcoordSets(material);
-    return std::ranges::any_of(sampledTextures(material), [&](const SampledTexture& texture) {
+bool namesTooManySets(const Material& material, bool occlusion) {
+    const std::array<int, 2> sets = texcoordSets(material, occlusion);
+    return std::ranges::any_of(sampledTextures(material, occlusion), [&](const SampledTexture& texture) {
         return texture.use->texcoord != sets[0] && texture.use->texcoord != sets[1];
     });
 }

@@ -58,15 +58,15 @@ struct SampledTexture {
     std::uint32_t row = 0;  ///< of the material's texels: its transform's rows, with texture and slot
     bool color = false;     ///< decoded from sRGB
 };
-/** All of a material's, base colour and emission first. */
-std::vector<SampledTexture> sampledTextures(const Material& material);
+/** All of a material's, base colour and emission first. `occlusion`: that of occlusion too. */
+std::vector<SampledTexture> sampledTextures(const Material& material, bool occlusion = false);
 
 /** The sets of texture coordinates that triangles of this material carry; -1 for none. */
-std::array<int, 2> texcoordSets(const Material& material);
+std::array<int, 2> texcoordSets(const Material& material, bool occlusion = false);
 /** Which of them a use reads; one that names a third set reads the first. */
 std::uint32_t texcoordSlot(const std::array<int, 2>& sets, const TextureUse& use);
 /** Whether the material's textures name more than two sets. */
-bool namesTooManySets(const Material& material);
+bool namesTooManySets(const Material& material, bool occlusion = false);
 
 /** Whether triangles of this material need tangents, and by which set of texture coordinates. */
 bool needsTangents(const Material& material);

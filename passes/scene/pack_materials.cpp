@@ -210,7 +210,7 @@ void addParameters(const Material& m, Rows& rows) {
                 m.iridescenceIor};
     // Without a texture the film's thickness is the largest.
     rows[13] = {m.iridescenceThicknessTexture ? m.iridescenceThicknessMinimum : m.iridescenceThicknessMaximum,
-                m.iridescenceThicknessMaximum, 0.0f, 0.0f};
+                m.iridescenceThicknessMaximum, m.occlusionStrength, 0.0f};
     if (m.solid) {
         rows[45] = {m.solid->first, glm::uintBitsToFloat(std::uint32_t(m.solid->pattern) + 1u)};
         rows[46] = {m.solid->second, m.solid->scale};
@@ -257,15 +257,15 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         addParameters(material, rows);
         for (std::size_t row = 3; row < 40; row = row == 5 ? 14 : row + 2)
             rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
-        rows[43].w = glm::uintBitsToFloat(std::uint32_t(-1));
+        rows[43].w = rows[47].w = glm::uintBitsToFloat(std::uint32_t(-1));
         if (materialUsed[i]) {
             const std::uint32_t features = materialFeatures(material);
             packed.roughFacets |= hasRoughFacets(material);
             packed.tiltedLobes |=
                 (features & (kNormalMapFeature | kBumpFeature)) != 0 && hasWideLobes(material);
             packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
-            const std::array<int, 2> sets = texcoordSets(material);
-            for (const SampledTexture& texture : sampledTextures(material)) {
+            const std::array<int, 2> sets = texcoordSets(material, packed.occlusionTextures);
+            for (const SampledTexture& texture : sampledTextures(material, packed.occlusionTextures)) {
                 const int index =
                     textures.add(*texture.use, texture.color, texture.use == &material.emissiveTexture);
                 rows[texture.row] = transformRow(*texture.use, 0, std::uint32_t(index));
@@ -275,6 +275,8 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             packed.emission |= emits;
             packed.texturedEmission |= emits && material.emissiveTexture;
             packed.baseColorTextures |= bool(material.baseColorTexture);
+            packed.alphaMasks |= material.alphaMode == AlphaMode::Mask;
+            packed.alphaBlends |= material.alphaMode == AlphaMode::Blend;
             packed.doubleSidedEmission |= emits && material.doubleSided;
         }
         packed.materials.insert(packed.materials.end(), rows.begin(), rows.end());

@@ -32,16 +32,17 @@ glm::vec4 withBits(const glm::vec3& v, std::uint32_t bits) {
 struct NotShown {
     std::set<std::pair<std::string, std::string>> anywhere, byRaster;
 };
-NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& materialUsed) {
+NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& materialUsed, bool occlusion) {
     NotShown result;
     auto& named = result.anywhere;
     auto& raster = result.byRaster;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if (!materialUsed[i]) continue;
         const Material& m = scene.materials[i];
-        if (m.occlusionTexture) named.emplace("occlusion textures", "occlusion is computed, not read");
+        if (m.occlusionTexture && !occlusion)
+            named.emplace("occlusion textures", "occlusion is computed, not read");
         if (m.thicknessTexture) named.emplace("thickness textures", "thickness is that of the surfaces");
-        if (pack::namesTooManySets(m))
+        if (pack::namesTooManySets(m, occlusion))
             named.emplace("third texture coordinate sets", "a material's textures read two sets at most");
         const std::uint32_t features = pack::materialFeatures(m);
         const auto skipIf = [&](bool isAsked, const char* what, const char* why) {
@@ -57,7 +58,7 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
                "the raster pipeline shows no light that goes through surfaces");
         const std::size_t filtered = std::size_t(bool(m.baseColorTexture)) +
                                      std::size_t(m.emissiveTexture && m.emission != glm::vec3(0.0f));
-        skipIf(sampledTextures(m).size() > filtered, "filters of material textures",
+        skipIf(sampledTextures(m, occlusion).size() > filtered, "filters of material textures",
                "the raster pipeline filters base colour and emission; other textures are bilinear at their "
                "base level");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
@@ -70,7 +71,7 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
 // A pass that learns to shade one of these takes its line out.
 std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& scene,
                                                                 const std::vector<bool>& materialUsed) {
-    const NotShown result = materialsNotShown(scene, materialUsed);
+    const NotShown result = materialsNotShown(scene, materialUsed, false);
     return {result.anywhere.begin(), result.anywhere.end()};
 }
 
@@ -198,6 +199,10 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         return packed;
     }
     PackedScene packed;
+    packed.occlusionTextures =
+        options.occlusion && scene.environment && std::ranges::any_of(scene.materials, [](const Material& m) {
+            return m.occlusionTexture && m.occlusionStrength > 0.0f && !m.unlit;
+        });
     std::vector<pack::Surface> surfaces;
     std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
     std::vector<std::vector<glm::vec3>> keys;
@@ -242,7 +247,7 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         if (material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f))
             packed.writtenOutEmitters.push_back(order[slot]);
     }
-    const NotShown absent = materialsNotShown(scene, materialUsed);
+    const NotShown absent = materialsNotShown(scene, materialUsed, options.occlusion);
     packed.skipped.insert(packed.skipped.end(), absent.anywhere.begin(), absent.anywhere.end());
     packed.rasterSkipped.assign(absent.byRaster.begin(), absent.byRaster.end());
     return packed;

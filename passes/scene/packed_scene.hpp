@@ -23,7 +23,7 @@
 namespace helio {
 
 /** Texels per material in PackedScene::materials; shaders/scene/materials.glsl names them. */
-inline constexpr std::uint32_t kMaterialTexels = 47;
+inline constexpr std::uint32_t kMaterialTexels = 49;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
 
@@ -70,6 +70,8 @@ struct PackOptions {
     LightChoice lights = LightChoice::Power;
     /** Triangles take the place of shapes. */
     bool shapesAsTriangles = false;
+    /** Occlusion textures are packed: they dim the light of surroundings that nothing is traced to. */
+    bool occlusion = false;
     /** PackedScene::diffuseEnvironment is made. */
     bool diffuseEnvironment = false;
     /** The point of the world that becomes the packed scene's origin, so that floats resolve a scene that
@@ -162,7 +164,9 @@ struct PackedScene {
     bool emission = false;          ///< some surface in use emits
     bool texturedEmission = false;  ///< emission varies over some surface in use
     bool baseColorTextures = false;
-    bool solidTextures = false;          ///< some base colour varies over space
+    bool occlusionTextures = false;  ///< of PackOptions::occlusion, where there are surroundings to dim
+    bool alphaMasks = false, alphaBlends = false;  ///< modes of materials in use
+    bool solidTextures = false;                    ///< some base colour varies over space
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
     std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
     bool roughFacets = false;            ///< some material in use has microfacets of a width

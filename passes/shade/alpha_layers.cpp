@@ -43,15 +43,21 @@ AlphaLayers::AlphaLayers(Device& device, const RasterPipeline& raster, ShadePipe
 }
 
 AlphaLayers::Drawing AlphaLayers::draw(const std::function<void(const std::vector<PassTiming>&)>& timings) {
+    return peel(begin_, layer_, open_, counters_, timings);
+}
+
+AlphaLayers::Drawing AlphaLayers::peel(Plan& begin, Plan& layer, const Readback<std::uint32_t>& open,
+                                       const Readback<RasterCounters>& counters,
+                                       const std::function<void(const std::vector<PassTiming>&)>& timings) {
     Drawing drawing;
-    const Execution begun = begin_.execute();
-    begin_.wait(begun);
-    if (timings) timings(begin_.timings(begun));
+    const Execution begun = begin.execute();
+    begin.wait(begun);
+    if (timings) timings(begin.timings(begun));
     do {
-        const Execution done = layer_.execute();
-        drawing.open = open_.wait(done).at(0);
-        drawing.counters.push_back(counters_.wait(done).at(0));
-        if (timings) timings(layer_.timings(done));
+        const Execution done = layer.execute();
+        drawing.open = open.wait(done).at(0);
+        drawing.counters.push_back(counters.wait(done).at(0));
+        if (timings) timings(layer.timings(done));
         ++drawing.layers;
     } while (drawing.open > 0 && drawing.layers < kMaxLayers);
     return drawing;

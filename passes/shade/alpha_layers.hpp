@@ -35,6 +35,10 @@ public:
     };
     /** Draws all layers. `timings` is given those of each plan. */
     Drawing draw(const std::function<void(const std::vector<PassTiming>&)>& timings = {});
+    /** Runs `begin` once and `layer` until no pixel is open, at most kMaxLayers times. */
+    static Drawing peel(Plan& begin, Plan& layer, const Readback<std::uint32_t>& open,
+                        const Readback<RasterCounters>& counters,
+                        const std::function<void(const std::vector<PassTiming>&)>& timings);
 
     /** What the last drawing left, as LayerTarget says. */
     DeviceBuffer& color() { return color_; }

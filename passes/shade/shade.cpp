@@ -161,25 +161,35 @@ void ShadePipeline::declareCorners(Graph& graph, std::shared_ptr<const RasterVie
     common.corners = {{"uCornerLight", light, Format::RGBA32F}};
 }
 
-ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr<const RasterView> view) {
+/** Places of triangles by their ids; anything where they lie in that order. */
+Buffer ShadePipeline::declareSlots(Graph& graph) {
+    // Keys hold ids in scene order; a tree keeps its triangles in its own.
+    if (inSceneOrder()) return graph.import(environment_);
     const std::uint32_t triangleCount = scene_.info().triangleCount;
-    const bool sceneOrder = scene_.info().nodeCount == 0;
+    const Buffer slots = graph.buffer("shade.slots", {std::uint64_t(triangleCount) * 4});
+    graph.compute("shade.slots", shaders::shadeSlots)
+        .reads(scene_.bindings(graph, {"uTriangles"}))
+        .overwrites({{"uSlots", slots}})
+        .record([triangleCount](Commands& c) {
+            constexpr std::uint32_t most = 1u << 21;
+            for (std::uint32_t first = 0; first < triangleCount; first += most)
+                c.push(std::array{first, triangleCount})
+                    .dispatchInvocations(std::min(most, triangleCount - first));
+        });
+    return slots;
+}
+
+/** TEXTURE_FILTER. */
+std::int32_t ShadePipeline::filterConstant(TextureFilter filter) const {
+    // Without any mip level the trilinear filter is the bilinear.
+    const bool bilinear = filter == TextureFilter::Trilinear && !mips_.needed();
+    return std::int32_t(bilinear ? TextureFilter::Bilinear : filter);
+}
+
+ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr<const RasterView> view) {
     Common common;
     common.environment = graph.import(environment_);
-    // Keys hold ids in scene order; a tree keeps its triangles in its own.
-    common.slots = common.environment;
-    if (!sceneOrder) {
-        common.slots = graph.buffer("shade.slots", {std::uint64_t(triangleCount) * 4});
-        graph.compute("shade.slots", shaders::shadeSlots)
-            .reads(scene_.bindings(graph, {"uTriangles"}))
-            .overwrites({{"uSlots", common.slots}})
-            .record([triangleCount](Commands& c) {
-                constexpr std::uint32_t most = 1u << 21;
-                for (std::uint32_t first = 0; first < triangleCount; first += most)
-                    c.push(std::array{first, triangleCount})
-                        .dispatchInvocations(std::min(most, triangleCount - first));
-            });
-    }
+    common.slots = declareSlots(graph);
     common.spec = scene_.constants({"HAS_NORMALS", "HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_EMISSION",
                                     "HAS_EMISSION_TEXTURES", "HAS_FLOAT_TEXTURES", "HAS_AREA_LIGHTS",
                                     "HAS_PUNCTUAL_LIGHTS", "HAS_TRIANGLE_LIGHTS"});
@@ -188,10 +198,12 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
         common.spec.merge(scene_.constants(
             {"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES", "HAS_LINEAR_TEXTURES"}));
     }
-    // Without any mip level the trilinear filter is the bilinear.
-    const bool bilinear = filter_ == TextureFilter::Trilinear && !mips_.needed();
-    common.spec["TEXTURE_FILTER"] = std::int32_t(bilinear ? TextureFilter::Bilinear : filter_);
-    common.spec["SCENE_ORDER"] = sceneOrder;
+    if (scene_.info().occlusionTextures) {
+        common.model["OCCLUSION"] = "1";
+        common.spec.merge(scene_.constants({"HAS_LINEAR_TEXTURES"}));
+    }
+    common.spec["TEXTURE_FILTER"] = filterConstant(filter_);
+    common.spec["SCENE_ORDER"] = inSceneOrder();
     common.spec["ORTHOGRAPHIC"] = view->orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
     common.firstSpec = common.spec;
@@ -326,6 +338,25 @@ void ShadePipeline::declareLayer(Graph& graph, Buffer visibility, const LayerTar
         });
 }
 
+void ShadePipeline::declareMask(Graph& graph, Buffer visibility, const MaskTarget& target,
+                                std::shared_ptr<const RasterView> view,
+                                std::shared_ptr<const std::uint32_t> firstKey) {
+    SpecConstants spec = scene_.constants({"HAS_COLORS", "HAS_BASE_TEXTURES", "HAS_FLOAT_TEXTURES"});
+    spec["TEXTURE_FILTER"] = filterConstant(target.filter);
+    spec["SCENE_ORDER"] = inSceneOrder();
+    spec["ORTHOGRAPHIC"] = view->orthographic;
+    graph.compute("shade.mask", shaders::shadeMask, {.spec = spec})
+        .reads(scene_.bindings(graph, {"uTriangles", "uTexcoords", "uColors", "uMaterials", "uTextures",
+                                       "uTexels8", "uTexelsFloat"}))
+        .reads(mips_.bindings(graph))
+        .reads({{"uVisibility", visibility}, {"uSlots", declareSlots(graph), Format::R32UI}})
+        .modifies({{"uLimit", target.limit}, {"uOpen", target.open}})
+        .writes({{"uKeys", target.keys}})
+        .record([view, firstKey](Commands& c) {
+            c.push(makeRasterPush(*view, 0, *firstKey, 0)).dispatchOver(view->width, view->height);
+        });
+}
+
 std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const {
     std::vector<std::pair<std::string, std::string>> result;
     const PackedScene& info = scene_.info();
@@ -344,14 +375,16 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
                                 shadowKind_ == Shadows::Kind::None
                                     ? "--shadows none asked for that"
                                     : "there is no room for maps of so many lights");
-        if (seesThrough() && shadows_.needed())
-            result.emplace_back("alpha in shadows",
-                                "shadow maps take every surface as opaque; the path pipeline does not");
+        if (blends() && shadows_.needed())
+            result.emplace_back("blending in shadows",
+                                "shadow maps take blended surfaces as opaque; the path pipeline does not");
         if (seesThrough() && info.lightCount - (lightSamples_ > 0 ? surfaceLights_ : 0) > kLightsPerPass)
             result.emplace_back("lights", fmt::format("layers take the first {} lights", kLightsPerPass));
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }
+    if (info.occlusionTextures && cornersShaded() > 0)
+        result.emplace_back("occlusion textures", "flat and Gouraud shading find all light at corners");
     for (const auto& skipped : info.rasterSkipped) result.push_back(skipped);
     if (lightSamples_ > 0)
         result.emplace_back("light of every emissive surface",

@@ -48,6 +48,14 @@ struct LayerTarget {
     Buffer open;                      ///< uint: pixels that are not done, added to
 };
 
+/** What layers leave where masks alone are looked at, per pixel. */
+struct MaskTarget {
+    Buffer keys;   ///< of the visible surfaces, several images' beside each other
+    Buffer limit;  ///< 64 bits: the next layer's keys are below; 0 where the pixel is done
+    Buffer open;   ///< uint: pixels that are not done, added to
+    TextureFilter filter = TextureFilter::Bilinear;  ///< of the masks
+};
+
 /** Shades one scene. Must outlive the plans it is declared in, as must the scene. */
 class ShadePipeline {
 public:
@@ -85,6 +93,15 @@ public:
     void declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,
                       std::shared_ptr<const RasterView> view);
 
+    /** Whether some material has an alpha mask. */
+    bool masks() const { return scene_.info().alphaMasks; }
+    /** Whether some material is blended with what is behind it. */
+    bool blends() const { return scene_.info().alphaBlends; }
+    /** Looks up the masks of a layer of a peeled visibility buffer: see passes/shade/alpha_masks.hpp. The
+     * image's keys begin at `firstKey`, read at every execution. */
+    void declareMask(Graph& graph, Buffer visibility, const MaskTarget& target,
+                     std::shared_ptr<const RasterView> view, std::shared_ptr<const std::uint32_t> firstKey);
+
     /** The scene's triangles for RasterPipeline::declare. */
     RasterTriangles triangles(Graph& graph);
 
@@ -98,6 +115,9 @@ public:
 private:
     struct Common;
     Common declareCommon(Graph& graph, std::shared_ptr<const RasterView> view);
+    bool inSceneOrder() const { return scene_.info().nodeCount == 0; }
+    Buffer declareSlots(Graph& graph);
+    std::int32_t filterConstant(TextureFilter filter) const;
     void declareCorners(Graph& graph, std::shared_ptr<const RasterView> view, Common& common);
     void bindScene(Graph& graph, Pass& pass, const Common& common);
 

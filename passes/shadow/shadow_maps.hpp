@@ -44,6 +44,8 @@ public:
     std::vector<Binding> bindings(Graph& graph);
     bool needed() const { return !layout_.faces.empty(); }
     const ShadowLayout& layout() const { return layout_; }
+    /** The keys, ShadowLayout::offsets apart. */
+    DeviceBuffer& maps() { return maps_; }
 
 private:
     ShadowLayout layout_;

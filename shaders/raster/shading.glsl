@@ -2,13 +2,13 @@
 #ifndef SHADERS_RASTER_SHADING_GLSL
 #define SHADERS_RASTER_SHADING_GLSL
 
+#include "shaders/raster/footprint.glsl"
 #include "shaders/raster/polygon_light.glsl"
 #include "shaders/raster/shadow.glsl"
 #include "shaders/raster/surface.glsl"
 #include "shaders/sampling/hash.glsl"
 #include "shaders/scene/lights.glsl"
 #include "shaders/scene/materials.glsl"
-#include "shaders/texture/filters.glsl"
 layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constant radiance of the surroundings; PackedScene::diffuseEnvironment
 #ifdef SURFACE_MATERIALS
 #include "shaders/raster/material_light.glsl"
@@ -27,21 +27,11 @@ layout(set = 0, binding = 2) uniform usamplerBuffer uInstanceFirst;  ///< first 
 layout(set = 0, binding = 11) uniform usamplerBuffer uLightSums;     ///< powers of the lights before, LIGHT_SAMPLES strides in all
 #endif
 
-/// A material's texture at `row` (3 or 5) over the pixel's footprint; white where there is none.
-vec4 filteredMaterialTexture(int material, int row, vec4 uv, vec4 dx, vec4 dy) {
-    uvec4 first = texelFetch(uMaterials, material * MATERIAL_TEXELS + row);
-    uvec4 second = texelFetch(uMaterials, material * MATERIAL_TEXELS + row + 1);
-    bool set0 = second.w == 0u;
-    vec3 u = uintBitsToFloat(first.xyz), v = uintBitsToFloat(second.xyz);
-    vec3 p = vec3(set0 ? uv.xy : uv.zw, 1.0);
-    vec2 px = set0 ? dx.xy : dx.zw, py = set0 ? dy.xy : dy.zw;
-    vec2 at = vec2(dot(u, p), dot(v, p));
-    vec2 atX = vec2(dot(u.xy, px), dot(v.xy, px)), atY = vec2(dot(u.xy, py), dot(v.xy, py));
-    vec4 value = vec4(1.0);
-    if (int(first.w) >= 0)
-        value = sampleFiltered(int(first.w), at, atX, atY);
-    return value;
-}
+#ifdef OCCLUSION
+const bool HAS_OCCLUSION = true;
+#else
+const bool HAS_OCCLUSION = false;
+#endif
 
 #ifdef CORNERS
 /// Where light is found for CORNERS corners of a triangle (1: once for all of it), two texels each: that on kd / pi, and
@@ -68,6 +58,9 @@ struct Shaded {
     float exponent;
 #endif
     float opacity;  // what it stops of the light behind
+#ifdef OCCLUSION
+    float open;     // share of the light from all around that its surroundings leave
+#endif
 #ifdef SURFACE_MATERIALS
     SurfaceBsdf bsdf;
     SurfacePoint point;
@@ -85,13 +78,7 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     Surface surface = surfaceAt(source, pixel);
 
     vec4 uv = vec4(0.0), dx = vec4(0.0), dy = vec4(0.0);
-    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES) {
-        vec4 uv0 = texelFetch(uTexcoords, g * 3), e1 = texelFetch(uTexcoords, g * 3 + 1) - uv0,
-             e2 = texelFetch(uTexcoords, g * 3 + 2) - uv0;
-        uv = uv0 + surface.b.y * e1 + surface.b.z * e2;
-        dx = surface.db1.x * e1 + surface.db2.x * e2;
-        dy = surface.db1.y * e1 + surface.db2.y * e2;
-    }
+    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES || HAS_OCCLUSION) footprint(g, surface, uv, dx, dy);
     vec4 base = uintBitsToFloat(texelFetch(uMaterials, source.material * MATERIAL_TEXELS));
     if (HAS_COLORS) base *= vertexColor(g, surface.b);
     if (HAS_BASE_TEXTURES) base *= filteredMaterialTexture(source.material, 3, uv, dx, dy);
@@ -112,6 +99,10 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     shaded.diffuse = base.rgb;
     shaded.mirror = vec3(0.0);
     shaded.opacity = 1.0;
+#ifdef OCCLUSION
+    float strength = uintBitsToFloat(texelFetch(uMaterials, source.material * MATERIAL_TEXELS + 13).z);
+    shaded.open = 1.0 + strength * (materialTexture(source.material, 47, uv).r - 1.0);
+#endif
 #ifdef SURFACE_MATERIALS
     if (HAS_ALPHA) shaded.opacity = opacityOf(source.material, base.a);
     shaded.point = rasterPoint(source, surface, shaded.normal);
@@ -312,12 +303,16 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 /// Radiance that a surface reflects of the surroundings.
 vec3 reflectedAmbient(Shaded shaded) {
 #ifdef CORNERS
-    return vec3(0.0);  // the corners' light has it
+    vec3 light = vec3(0.0);  // the corners' light has it
 #elif defined(SPECULAR_ENVIRONMENT) && !defined(BLINN_PHONG)
-    return surroundingsLight(shaded.bsdf, shaded.albedo, reflectedSurroundings(shaded.bsdf.frame[2]));
+    vec3 light = surroundingsLight(shaded.bsdf, shaded.albedo, reflectedSurroundings(shaded.bsdf.frame[2]));
 #else
-    return (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
+    vec3 light = (shaded.diffuse + shaded.mirror) * reflectedSurroundings(shaded.normal);
 #endif
+#ifdef OCCLUSION
+    light *= shaded.open;
+#endif
+    return light;
 }
 
 #endif

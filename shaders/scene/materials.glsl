@@ -1,6 +1,6 @@
 #ifndef HELIOGRAPH_SCENE_MATERIALS
 #define HELIOGRAPH_SCENE_MATERIALS
-/** @file Materials: 47 texels each (kMaterialTexels). Base colour and emission are read here, the rest, where the
+/** @file Materials: 49 texels each (kMaterialTexels). Base colour and emission are read here, the rest, where the
  * scene has more than diffuse surfaces, in shaders/scene/surface_material.glsl. */
 #include "shaders/scene/attributes.glsl"
 #include "shaders/scene/features.glsl"
@@ -12,10 +12,11 @@
  * 2: light sampling density per area (1/m^2), metallic, roughness, alpha cutoff
  * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of slot of texture coordinates
  * 5, 6: the same of the emissive texture
+ * 13: z: strength of the occlusion texture; 47, 48: that texture, of which red is read, in the raster pipeline alone
  * 45: first colour of the solid texture, bits of its pattern (0: none); 46: second colour, features a unit
  */
 layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;
-const int MATERIAL_TEXELS = 47;
+const int MATERIAL_TEXELS = 49;
 const uint MATERIAL_DOUBLE_SIDED = 1u << 0;
 const uint MATERIAL_MASK = 1u << 1;           ///< opaque where alpha is at least the cutoff
 const uint MATERIAL_BLEND = 1u << 2;          ///< opaque with the chance alpha

@@ -1,8 +1,10 @@
 /** @file Row X14: baked ambient occlusion against closed forms. */
-#include "tests/support/device.hpp"
+#include "engine/scene/samples/shapes.hpp"
+#include "tests/support/renderer.hpp"
 
 #include <heliograph/bake.hpp>
 #include <heliograph/error.hpp>
+#include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -129,6 +131,70 @@ TEST(Bake, AFlatFloorOfManyTrianglesHidesNothingFromItself) {
         }
     const ImageF image = bakeOf(sceneOf({grid}), 32, 256);
     for (const float value : image.data) ASSERT_EQ(value, 1.0f);
+}
+
+TEST(Bake, TheRasterizerFetchesWhatPathsFind) {
+    // The floor before a wall again, white under a white sky; its baked texture in the material.
+    Scene scene = sceneOf(
+        {rectangle({0, 0, 0.5f}, {2, 0, 0}, {0, 0, -1}), rectangle({0, 0, -20}, {0, 0, 40}, {0, 1, 0})});
+    constexpr std::uint32_t size = 32;
+    const ImageF baked = bakeOf(scene, size, 256);
+    TextureImage image{"occlusion", size, size, std::vector<float>()};
+    for (std::size_t i = 0; i < std::size_t(size) * size; ++i) {
+        const float v = baked.data[i * 3];
+        auto& texels = std::get<std::vector<float>>(image.texels);
+        texels.insert(texels.end(), {v, 0.0f, 0.0f, 1.0f});  // red alone counts
+    }
+    scene.images.push_back(std::move(image));
+    Texture texture;
+    texture.image = 0;
+    texture.wrapU = texture.wrapV = Wrap::ClampToEdge;
+    scene.textures.push_back(texture);
+    const int white = addMaterial(scene, diffuse("white", glm::vec3(1)));
+    for (Mesh& mesh : scene.meshes) mesh.primitives[0].material = white;
+    addCamera(scene, {1, 2.5f, 0.6f}, {1, 0, 0}, 40);
+    scene.environment = Environment{glm::vec3(1.0f), -1};
+
+    RenderOptions options;
+    options.size = {32, 32};
+    const auto floorPixels = [&](const RenderResult& result) {
+        std::vector<double> values;
+        const std::size_t channels = result.image.channels.size();
+        const auto red = std::size_t(result.image.channel("R")),
+                   id = std::size_t(result.image.channel("id.instance"));
+        for (std::size_t i = 0; i < 32 * 32; ++i)
+            values.push_back(result.image.data[i * channels + id] == 0.0f
+                                 ? double(result.image.data[i * channels + red])
+                                 : -1.0);
+        return values;
+    };
+    options.maxDepth = 1;
+    options.samples = 256;
+    const std::vector<double> paths = floorPixels(renderer().render(scene, options));
+    options.maxDepth = -1;
+    options.pipeline = Pipeline::Raster;
+    const std::vector<double> open = floorPixels(renderer().render(scene, options));
+    scene.materials[std::size_t(white)].occlusionTexture.texture = 0;
+    const std::vector<double> occluded = floorPixels(renderer().render(scene, options));
+    scene.materials[std::size_t(white)].occlusionStrength = 0.25f;
+    const std::vector<double> quarter = floorPixels(renderer().render(scene, options));
+    EXPECT_EQ(takeValidationMessages(), std::vector<std::string>());
+    double sum = 0, truth = 0, squares = 0;
+    int pixels = 0;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (paths[i] < 0 || occluded[i] < 0) continue;
+        ++pixels;
+        sum += occluded[i];
+        truth += paths[i];
+        squares += (occluded[i] - paths[i]) * (occluded[i] - paths[i]);
+        EXPECT_FLOAT_EQ(float(open[i]), 1.0f);
+        EXPECT_NEAR(quarter[i], 1 + 0.25 * (occluded[i] - 1), 1e-5);
+    }
+    ASSERT_GT(pixels, 100);
+    fmt::print("{} pixels: mean {:.4f}, of paths {:.4f}, RMS difference {:.4f}\n", pixels, sum / pixels,
+               truth / pixels, std::sqrt(squares / pixels));
+    EXPECT_NEAR(sum / truth, 1, 0.005);
+    EXPECT_LT(std::sqrt(squares / pixels), 0.03);  // noise of 256 paths: about 0.02
 }
 
 TEST(Bake, WhatItRefuses) {

@@ -1,6 +1,7 @@
 // Surfaces that let light through, in the raster pipeline: closed forms of layers in any order, and the path
 // tracer.
 
+#include "engine/scene/samples/shapes.hpp"
 #include "tests/support/renderer.hpp"
 
 #include <heliograph/verify.hpp>
@@ -197,8 +198,111 @@ TEST(ShadeAlpha, SupersamplesHaveLayersOfTheirOwn) {
     // Multisampling shades a triangle once a pixel and cannot: it says so.
     options.antialiasing = antialiasing("msaa4");
     const RenderResult opaque = renderer().render(sheets(list), options);
-    EXPECT_TRUE(std::ranges::any_of(opaque.skipped,
-                                    [](const auto& s) { return s.first == "alpha masks and blending"; }));
+    EXPECT_TRUE(std::ranges::any_of(opaque.skipped, [](const auto& s) { return s.first == "blending"; }));
+}
+
+/** Alpha of a mask over its sheet: smooth, so that a pixel off by its width changes little. */
+double maskAlpha(double u, double v) {
+    const double pi = 3.14159265358979;
+    return 0.5 + 0.45 * std::sin(4 * pi * u) * std::sin(4 * pi * v);
+}
+
+/** Gives a sheet of the scene that mask. */
+void addMask(Scene& scene, std::size_t material) {
+    constexpr std::uint32_t size = 128;
+    std::vector<float> texels;
+    for (std::uint32_t i = 0; i < size * size; ++i)
+        for (int c = 0; c < 4; ++c)
+            texels.push_back(c < 3 ? 1.0f
+                                   : float(maskAlpha((i % size + 0.5) / size, (i / size + 0.5) / size)));
+    scene.images.push_back({"mask", size, size, std::move(texels)});
+    Texture texture;
+    texture.image = int(scene.images.size()) - 1;
+    texture.useMipmaps = false;
+    scene.textures.push_back(texture);
+    scene.materials[material].alphaMode = AlphaMode::Mask;
+    scene.materials[material].baseColorTexture.texture = int(scene.textures.size()) - 1;
+}
+
+TEST(ShadeAlpha, MultisamplesSeeThroughMasksEachForItself) {
+    // Two masks before each other and a sheet behind, all of one colour over a triangle: what a sample sees
+    // is what a supersample at its place does.
+    Scene scene = sheets({{1, 0.2, 1, {1, 0, 0}}, {0.5, -0.3, 1, {0, 1, 0}}, {0, 0, 1, {0, 0, 1}}});
+    addMask(scene, 0);
+    addMask(scene, 1);
+    scene.materials[0].alphaCutoff = 0.4f;
+    scene.materials[1].alphaCutoff = 0.3f;
+    scene.materials[2].alphaMode = AlphaMode::Opaque;
+    for (const std::uint32_t size : {24u, 33u}) {
+        RenderOptions options = raster(size);
+        options.antialiasing = antialiasing("msaa8");
+        const RenderResult multi = renderer().render(scene, options);
+        EXPECT_EQ(counter(multi, "alpha_layers"), 3);
+        options.antialiasing.kind = Antialiasing::Kind::Supersampling;
+        const RenderResult super = renderer().render(scene, options);
+        double worst = 0, mixed = 0;
+        const auto ids = std::uint32_t(multi.image.channel("id.instance"));
+        for (std::uint32_t y = 0; y < size; ++y)
+            for (std::uint32_t x = 0; x < size; ++x) {
+                for (std::uint32_t c = 0; c < 3; ++c)
+                    worst = std::max(
+                        worst, std::abs(double(multi.image.at(x, y, c)) - double(super.image.at(x, y, c))));
+                mixed += multi.image.at(x, y, 0) > 0.05f && multi.image.at(x, y, 0) < 0.95f;
+                EXPECT_EQ(multi.image.at(x, y, ids), super.image.at(x, y, ids));
+            }
+        EXPECT_LT(worst, 1e-6);
+        EXPECT_GT(mixed, 0.05 * size * size);
+        EXPECT_TRUE(std::ranges::none_of(multi.skipped, [](const auto& s) { return s.first == "blending"; }));
+    }
+}
+
+TEST(ShadeAlpha, LightComesThroughMasksAsRaysFindIt) {
+    constexpr std::uint32_t size = 40;
+    const glm::dvec3 lamp(0.3, -0.2, 3);
+    for (const auto type :
+         {PunctualLight::Type::Point, PunctualLight::Type::Spot, PunctualLight::Type::Directional}) {
+        // A floor at z = 0 under a mask at z = 1; the eye is between them.
+        Scene scene = sheets({{0, 0, 1, glm::vec3(0.0f), AlphaMode::Opaque}, {1, 0, 1, glm::vec3(0.0f)}});
+        scene.materials[0].baseColor = glm::vec4(1.0f);
+        addMask(scene, 1);
+        scene.nodes[2].translation = {0, 0, 0.5f};
+        PunctualLight light;
+        light.type = type;
+        light.intensity = glm::vec3(10.0f);
+        light.innerConeAngle = 0.7f;
+        light.outerConeAngle = 0.8f;
+        scene.lights = {light};
+        Node node = lookAtNode("lamp", lamp, {0, 0, 0});
+        node.light = 0;
+        scene.nodes.push_back(node);
+        scene.roots.push_back(3);
+        RenderOptions options = raster(size);
+        options.environment.reset();
+        options.shadows = {Shadows::Kind::Hard, 512};
+        const RenderResult maps = renderer().render(scene, options);
+        EXPECT_TRUE(std::ranges::none_of(maps.skipped,
+                                         [](const auto& s) { return s.first == "blending in shadows"; }));
+        options.pipeline = Pipeline::Path;
+        options.maxDepth = 1;
+        options.samples = 4;
+        const RenderResult rays = renderer().render(scene, options);
+        int lit = 0, dark = 0;
+        for (std::uint32_t y = 0; y < size; ++y)
+            for (std::uint32_t x = 0; x < size; ++x) {
+                const glm::dvec3 p(2 * (x + 0.5) / size - 1, 1 - 2 * (y + 0.5) / size, 0);
+                const glm::dvec3 to = type == PunctualLight::Type::Directional ? lamp : lamp - p;
+                const glm::dvec3 at = p + to / to.z;
+                if (std::max(std::abs(at.x), std::abs(at.y)) > 0.95) continue;
+                const double alpha = maskAlpha((at.x + 1) / 2, (1 - at.y) / 2);
+                if (std::abs(alpha - 0.5) < 0.15) continue;
+                const double value = double(maps.image.at(x, y, 0)), traced = double(rays.image.at(x, y, 0));
+                ++(alpha < 0.5 ? lit : dark);
+                EXPECT_EQ(value > 0, alpha < 0.5) << x << ", " << y;
+                EXPECT_NEAR(value, traced, 0.02 * traced) << x << ", " << y;
+            }
+        EXPECT_GT(lit, 100);
+        EXPECT_GT(dark, 100);
+    }
 }
 
 TEST(ShadeAlpha, MoreLayersThanThereAreIsAWarning) {
