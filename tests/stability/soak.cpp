@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 namespace {
@@ -84,9 +85,11 @@ int main(int argc, char** argv) {
         Soak soak;
         if (argc > 3) soak.next = std::strtoull(argv[3], nullptr, 10);
         if (!file.empty()) soak.load(file);
-        Renderer renderer;
+        std::optional<Renderer> renderer;
         while (double(soak.samples) < wanted) {
-            run(renderer, soak);
+            // A renderer keeps the kernels of all scenes it has met, and no two of these are alike.
+            if (!renderer || soak.next % 20 == 0) renderer.emplace();
+            run(*renderer, soak);
             soak.save(file);
             if (soak.next % 20 == 0)
                 fmt::print("{} scenes, {:.3g} of {:.3g} samples, {} not finite\n", soak.scenes,
