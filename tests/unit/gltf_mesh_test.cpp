@@ -1,5 +1,8 @@
 #include "tests/unit/gltf_support.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -232,6 +235,77 @@ void expectRefusedWithinMemory(const std::function<void()>& load, std::size_t by
 #else
     static_cast<void>(before), static_cast<void>(bytes);
 #endif
+}
+
+/** Meshes of one to five small primitives; each triangle has a place of its own. */
+GltfDocument manySmallPrimitives(int meshes) {
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["meshes"] = file.doc["nodes"] = json::array();
+    for (int m = 0; m < meshes; ++m) {
+        json primitives = json::array();
+        for (int p = 0; p < 1 + m % 5; ++p) {
+            const float x = float(m), y = float(p);
+            const int positions = file.addAccessor<float>({x, y, 0, x + 1, y, 0, x, y + 1, 0}, "VEC3", 3);
+            primitives.push_back({{"attributes", {{"POSITION", positions}}}, {"material", 0}});
+            if (m % 3 == 0)
+                primitives.back()["indices"] = file.addAccessor<std::uint16_t>({2, 0, 1}, "SCALAR", 3);
+        }
+        file.doc["meshes"].push_back({{"name", std::to_string(m)}, {"primitives", primitives}});
+        file.doc["nodes"].push_back({{"mesh", m}});
+    }
+    file.doc["materials"] = json::array({json::object()});
+    file.doc.erase("scenes");
+    return file;
+}
+
+TEST_F(Gltf, SmallPrimitivesComeInTheirOrder) {
+    constexpr int meshes = 700;  // more than are decoded together, by count and by text
+    GltfDocument file = manySmallPrimitives(meshes);
+    // Among them one that is large, by itself more than is decoded ahead.
+    const std::size_t large = 300000;
+    const int positions = file.addAccessor(std::vector<float>(large * 3, 7), "VEC3", large);
+    file.doc["meshes"][350]["primitives"].push_back({{"attributes", {{"POSITION", positions}}}});
+    const Scene scene = load(file);
+    ASSERT_EQ(scene.meshes.size(), std::size_t(meshes));
+    for (int m = 0; m < meshes; ++m) {
+        const Mesh& mesh = scene.meshes[std::size_t(m)];
+        EXPECT_EQ(mesh.name, std::to_string(m));
+        ASSERT_EQ(mesh.primitives.size(), std::size_t(1 + m % 5 + (m == 350 ? 1 : 0)));
+        for (int p = 0; p < 1 + m % 5; ++p) {
+            const Primitive& primitive = mesh.primitives[std::size_t(p)];
+            EXPECT_EQ(primitive.positions.at(1), glm::vec3(m + 1, p, 0));
+            EXPECT_EQ(primitive.indices, (m % 3 == 0 ? std::vector<std::uint32_t>{2, 0, 1}
+                                                     : std::vector<std::uint32_t>{0, 1, 2}));
+        }
+    }
+    EXPECT_EQ(scene.meshes[350].primitives.back().indices.size(), large);
+}
+
+TEST_F(Gltf, OfSmallPrimitivesTheFirstFaultIsToldAndNotesKeepTheirOrder) {
+    GltfDocument file = manySmallPrimitives(60);
+    const int odd = file.addAccessor<std::uint16_t>({0, 1, 2, 0}, "SCALAR", 4);
+    for (const int m : {41, 7, 23}) file.doc["meshes"][m]["primitives"][0]["indices"] = odd;
+    file.doc["meshes"][30]["primitives"][0]["mode"] = 0;
+    const Scene scene = load(file);
+    ASSERT_EQ(scene.warnings.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(
+            scene.warnings[i],
+            fmt::format("meshes[{}].primitives[0]: 4 indices are no whole triangles; the last are left out",
+                        std::array{7, 23, 41}[i]));
+    }
+    ASSERT_EQ(scene.skipped.size(), 1u);
+    const int wrong = file.addAccessor<std::uint16_t>({0, 1, 9}, "SCALAR", 3);
+    file.doc["meshes"][52]["primitives"][1]["indices"] = wrong;
+    file.doc["meshes"][33]["primitives"][2]["indices"] = wrong;
+    for (int run = 0; run < 20; ++run) {  // whichever is found first
+        try {
+            load(file);
+            ADD_FAILURE() << "index 9 of 3 vertices";
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.place, "meshes[33].primitives[2].indices");
+        }
+    }
 }
 
 TEST_F(Gltf, SharedIndicesDoNotUnfoldASmallFile) {

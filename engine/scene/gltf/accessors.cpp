@@ -180,8 +180,7 @@ Asset::Layout Asset::layout(int index) const {
     }
     for (const int view : {sparse.indexView, sparse.valueView}) {
         if (views_[std::size_t(view)].byteStride != 0)
-            oddAccessors_.insert(
-                fmt::format("accessors[{}].sparse: byteStride is left out, its elements are packed", index));
+            note(fmt::format("accessors[{}].sparse: byteStride is left out, its elements are packed", index));
     }
     layout.sparseIndices = indexBytes.subspan(sparse.indexOffset);
     layout.sparseValues = valueBytes.subspan(sparse.valueOffset);
@@ -222,8 +221,7 @@ void Asset::read(int index, const Layout& layout, Store&& store) const {
     double last = -1;
     for (std::size_t i = 0; i < accessor.sparse->count; ++i) {
         const double element = component(&layout.sparseIndices[i * indexSize], indexType);
-        if (element <= last)
-            oddAccessors_.insert(fmt::format("accessors[{}].sparse.indices do not ascend", index));
+        if (element <= last) note(fmt::format("accessors[{}].sparse.indices do not ascend", index));
         last = element;
         if (!(element < double(accessor.count))) {
             throw InputError(

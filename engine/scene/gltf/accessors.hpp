@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <list>
+#include <mutex>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace helio::gltf {
@@ -78,6 +80,11 @@ private:
     std::list<std::vector<std::byte>> owned_;          ///< of buffers that are not in the file
     std::vector<std::span<const std::byte>> buffers_;  ///< into owned_ or the file
     std::size_t bytes_ = 0;
+    void note(std::string oddAccessor) const {
+        const std::scoped_lock lock(oddMutex_);
+        oddAccessors_.insert(std::move(oddAccessor));
+    }
+    mutable std::mutex oddMutex_;
     mutable std::set<std::string> oddAccessors_;
 };
 

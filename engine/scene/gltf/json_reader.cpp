@@ -352,6 +352,11 @@ std::size_t Document::longest(std::string_view list) const {
     return longest;
 }
 
+std::size_t Document::textBytes(std::string_view list, std::size_t index) const {
+    const std::vector<std::size_t>& begins = lists_.find(list)->second;
+    return begins[index + 1] - begins[index];
+}
+
 json Document::element(std::string_view list, std::size_t index, std::size_t* bytes) const {
     Parser parser(*this, lists_.find(list)->second[index], fmt::format("{}[{}]", list, index));
     json element = parser.parse();

@@ -50,6 +50,8 @@ public:
     std::size_t size(std::string_view list) const;
     /** Bytes of text that a list's longest object has. */
     std::size_t longest(std::string_view list) const;
+    /** Bytes of text that an object of a list has, about. */
+    std::size_t textBytes(std::string_view list, std::size_t index) const;
     /** An object of a list. Adds to `bytes`, if given, about what it takes. Throws InputError for one that
      * would take more than it may. May be called from several threads. */
     nlohmann::json element(std::string_view list, std::size_t index, std::size_t* bytes = nullptr) const;

@@ -1,5 +1,9 @@
 #include "engine/scene/gltf/lists.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -24,6 +28,19 @@ int componentsOf(std::string_view type) {
     return 0;
 }
 
+/** The objects of a list, read side by side where they are small. */
+template <class Object, class Read>
+std::vector<Object> objectsOf(const Document& document, const char* list, Read&& read) {
+    constexpr std::size_t smallText = std::size_t(1) << 16;
+    std::vector<Object> objects(document.size(list));
+    const std::size_t block =
+        document.longest(list) <= smallText ? 256 : std::max<std::size_t>(objects.size(), 1);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, objects.size(), block), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) read(document.element(list, i), objects[i]);
+    });
+    return objects;
+}
+
 }  // namespace
 
 std::size_t sizeOf(Component component) {
@@ -40,25 +57,16 @@ std::size_t sizeOf(Component component) {
 }
 
 std::vector<BufferView> bufferViewsOf(const Document& document) {
-    std::vector<BufferView> views;
-    views.reserve(document.size("bufferViews"));
-    for (std::size_t i = 0; i < document.size("bufferViews"); ++i) {
-        const json from = document.element("bufferViews", i);
-        BufferView& view = views.emplace_back();
+    return objectsOf<BufferView>(document, "bufferViews", [](const json& from, BufferView& view) {
         view.buffer = integerOr(from, "buffer", 0);
         view.byteOffset = sizeOr(from, "byteOffset", 0);
         view.byteLength = sizeOr(from, "byteLength", 0);
         view.byteStride = sizeOr(from, "byteStride", 0);
-    }
-    return views;
+    });
 }
 
 std::vector<Accessor> accessorsOf(const Document& document) {
-    std::vector<Accessor> accessors;
-    accessors.reserve(document.size("accessors"));
-    for (std::size_t i = 0; i < document.size("accessors"); ++i) {
-        const json from = document.element("accessors", i);
-        Accessor& accessor = accessors.emplace_back();
+    return objectsOf<Accessor>(document, "accessors", [](const json& from, Accessor& accessor) {
         const auto& type = from["type"].get_ref<const std::string&>();
         accessor.bufferView = integerOr(from, "bufferView", -1);
         accessor.component = Component(integerOr(from, "componentType", 0));
@@ -68,7 +76,7 @@ std::vector<Accessor> accessorsOf(const Document& document) {
         accessor.byteOffset = sizeOr(from, "byteOffset", 0);
         accessor.count = sizeOr(from, "count", 0);
         const auto found = from.find("sparse");
-        if (found == from.end()) continue;
+        if (found == from.end()) return;
         Sparse& sparse = accessor.sparse.emplace();
         const json &indices = (*found)["indices"], &values = (*found)["values"];
         sparse.count = sizeOr(*found, "count", 0);
@@ -77,8 +85,7 @@ std::vector<Accessor> accessorsOf(const Document& document) {
         sparse.indexType = Component(integerOr(indices, "componentType", 0));
         sparse.valueView = integerOr(values, "bufferView", 0);
         sparse.valueOffset = sizeOr(values, "byteOffset", 0);
-    }
-    return accessors;
+    });
 }
 
 const json& listOf(const json& object, const char* name) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace helio::gltf {
 
@@ -22,13 +23,28 @@ public:
      * are. */
     void takeFor(int accessor, const std::string& place, std::size_t kept, std::size_t transient);
 
+    /** One that refuses nothing and notes what is taken, until take() of the whole one gets the notes: for
+     * what is decoded ahead of its turn. */
+    static MemoryBudget notesOf(const Asset& asset) { return MemoryBudget(asset); }
+    void take(const MemoryBudget& notes);
+
     /** What may still be taken. */
     std::size_t left() const { return most_ - std::min(used_, most_); }
 
 private:
+    struct Note {
+        int accessor;  ///< -1 for none
+        std::string place;
+        std::size_t kept, transient;
+    };
+
+    explicit MemoryBudget(const Asset& asset) : asset_(asset), isNotes_(true) {}
+
     const Asset& asset_;
-    std::size_t most_;
-    std::size_t used_;
+    bool isNotes_ = false;
+    std::vector<Note> notes_;
+    std::size_t most_ = 0;
+    std::size_t used_ = 0;
     std::size_t read_ = 0;  ///< bytes of accessors with data, so far
 };
 

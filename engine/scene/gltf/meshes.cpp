@@ -1,293 +1,19 @@
 #include "engine/scene/gltf/build.hpp"
-#include "engine/scene/gltf/frames.hpp"
-#include "engine/scene/parallel.hpp"
+#include "engine/scene/gltf/primitive.hpp"
 
 #include <heliograph/error.hpp>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <optional>
+#include <utility>
 
 namespace helio::gltf {
 namespace {
 
 using nlohmann::json;
-
-Mode modeOf(const json& primitive) {
-    return Mode(integerOr(primitive, "mode", int(Mode::Triangles)));
-}
-
-/** glTF 2.0, section 3.7.2.1: three indices per triangle of a list, strip or fan. */
-std::vector<std::uint32_t> triangles(std::vector<std::uint32_t> v, Mode mode) {
-    if (mode == Mode::Triangles) return v;
-    std::vector<std::uint32_t> result;
-    result.reserve(v.size() < 3 ? 0 : (v.size() - 2) * 3);
-    for (std::size_t i = 0; i + 2 < v.size(); ++i) {
-        if (mode == Mode::TriangleStrip) {
-            result.insert(result.end(), {v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
-        } else {
-            result.insert(result.end(), {v[i + 1], v[i + 2], v[0]});
-        }
-    }
-    return result;
-}
-
-class PrimitiveBuilder {
-public:
-    PrimitiveBuilder(const Asset& asset, helio::Scene& scene, std::string place, MemoryBudget& memory)
-        : asset_(asset), scene_(scene), place_(std::move(place)), memory_(memory) {}
-
-    Primitive build(const json& from) {
-        Primitive primitive;
-        primitive.material = integerOr(from, "material", -1);
-        const json& attributes = from["attributes"];
-        const auto found = attributes.find("POSITION");
-        if (found == attributes.end()) {
-            skip(scene_, place_, "it has no POSITION");
-            return primitive;
-        }
-        const int position = found->get<int>();
-        asset_.check(position);
-        size_ = asset_.count(position);
-        readIndices(from, primitive);
-        keepUsedVertices(primitive);
-        primitive.positions = attribute<glm::vec3>("POSITION", position);
-        if (kept_.empty()) checkBounds(position, primitive.positions);
-        readAttributes(from, primitive);
-        fixNormals(primitive);
-        fixTangents(primitive);
-        return primitive;
-    }
-
-private:
-    /** An accessor's min and max must be those of its elements (section 3.6.2.5); what is drawn does not
-     * depend on them. */
-    void checkBounds(int accessor, const std::vector<glm::vec3>& positions) const {
-        if (asset_.accessor(accessor).isNormalized) return;
-        const json from = asset_.document().element("accessors", std::size_t(accessor));
-        using Box = std::pair<glm::vec3, glm::vec3>;
-        const auto join = [](const Box& a, const Box& b) {
-            return Box(glm::min(a.first, b.first), glm::max(a.second, b.second));
-        };
-        const Box box = tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, positions.size(), kBlock), Box(positions[0], positions[0]),
-            [&](const auto& range, Box part) {
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    part = join(part, {positions[i], positions[i]});
-                return part;
-            },
-            join);
-        const glm::dvec3 low(box.first), high(box.second);
-        const double tolerance = 1e-4 * std::max(glm::length(high - low), glm::length(high) * 1e-3);
-        const auto differs = [&](const char* member, const glm::dvec3& actual) {
-            const auto found = from.find(member);
-            if (found == from.end()) return false;
-            return found->size() != 3 ||
-                   glm::length(vectorOr(from, member, glm::dvec3(0)) - actual) > tolerance;
-        };
-        for (const auto& [member, actual] : {std::pair{"min", low}, std::pair{"max", high}}) {
-            if (differs(member, actual))
-                warn(scene_, fmt::format("accessors[{}].{} is not that of its elements", accessor, member));
-        }
-    }
-
-    /** Primitives often share the vertices of a whole file and use a few each: where a primitive uses fewer
-     * than half of them, only those are kept, in their order. */
-    void keepUsedVertices(Primitive& primitive) {
-        kept_.clear();
-        if (primitive.indices.size() < size_) {  // few: sorted, in time that does not depend on the file
-            memory_.take(place_, 0, primitive.indices.size() * sizeof(std::uint32_t));
-            kept_ = primitive.indices;
-            std::sort(kept_.begin(), kept_.end());
-            kept_.erase(std::unique(kept_.begin(), kept_.end()), kept_.end());
-        } else {
-            std::vector<std::uint8_t> isUsed(size_, 0);
-            forBlocks(primitive.indices.size(), [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i)
-                    std::atomic_ref(isUsed[primitive.indices[i]]).store(1, std::memory_order_relaxed);
-            });
-            const auto used = std::size_t(std::count(isUsed.begin(), isUsed.end(), 1));
-            if (used >= size_ - used) return;
-            memory_.take(place_, 0, used * sizeof(std::uint32_t));
-            kept_.reserve(used);
-            for (std::size_t i = 0; i < size_; ++i) {
-                if (isUsed[i]) kept_.push_back(std::uint32_t(i));
-            }
-        }
-        if (kept_.size() >= size_ - kept_.size()) {
-            kept_.clear();
-            return;
-        }
-        for (std::uint32_t& index : primitive.indices)
-            index = std::uint32_t(std::lower_bound(kept_.begin(), kept_.end(), index) - kept_.begin());
-    }
-
-    template <class Vector>
-    std::vector<Vector> attribute(const std::string& name, int accessor,
-                                  const std::string& of = "attributes.") const {
-        const std::string place = place_ + "." + of + name;
-        if (asset_.count(accessor) != size_) {
-            throw InputError(asset_.file(), place,
-                             fmt::format("has {} elements, POSITION {}", asset_.count(accessor), size_),
-                             "give every attribute one element per vertex");
-        }
-        if (asset_.accessor(accessor).component == Component::UnsignedInt) {
-            throw InputError(asset_.file(), place, fmt::format("accessor {} has the wrong type", accessor),
-                             "give floats, or integers of at most 16 bits");
-        }
-        asset_.check(accessor);
-        const std::size_t count = kept_.empty() ? size_ : kept_.size();
-        constexpr auto length = std::size_t(Vector::length());
-        static_assert(sizeof(Vector) == Vector::length() * sizeof(float));
-        if (kept_.empty()) {
-            memory_.takeFor(accessor, place, count * sizeof(Vector), 0);
-            std::vector<Vector> result(count);
-            asset_.floats(accessor, int(length), place, {&result[0][0], count * length});
-            return result;
-        }
-        memory_.take(place, count * sizeof(Vector), count * sizeof(Vector));
-        const std::vector<float> values = asset_.floats(accessor, int(length), place, kept_);
-        std::vector<Vector> result(count);
-        std::memcpy(&result[0][0], values.data(), values.size() * sizeof(float));
-        return result;
-    }
-
-    void readAttributes(const json& from, Primitive& primitive) {
-        const json& attributes = from["attributes"];
-        for (const auto& [name, value] : attributes.items()) {
-            const int accessor = value.get<int>();
-            if (name == "POSITION") continue;
-            if (name == "NORMAL") {
-                primitive.normals = attribute<glm::vec3>(name, accessor);
-            } else if (name == "TANGENT") {
-                primitive.tangents = attribute<glm::vec4>(name, accessor);
-            } else if (name == "COLOR_0") {
-                readColors(accessor, primitive);
-            } else if (!name.starts_with("TEXCOORD_") && !name.starts_with("JOINTS_") &&
-                       !name.starts_with("WEIGHTS_") && !name.starts_with("_")) {
-                skip(scene_, "attribute " + name, "the scene model has no place for it");
-            }
-        }
-        for (int set = 0;; ++set) {
-            const std::string name = fmt::format("TEXCOORD_{}", set);
-            const auto found = attributes.find(name);
-            if (found == attributes.end()) break;
-            primitive.texcoords.push_back(attribute<glm::vec2>(name, found->get<int>()));
-        }
-        for (const auto& [name, value] : attributes.items()) {
-            int set = 0;
-            const bool isTexcoord = std::sscanf(name.c_str(), "TEXCOORD_%d", &set) == 1;
-            if (isTexcoord && std::size_t(set) >= primitive.texcoords.size())
-                skip(scene_, "attribute " + name.substr(0, 40), "a set before it is missing");
-        }
-        const bool hasSkins = asset_.document().size("skins") > 0;
-        for (int set = 0; hasSkins && readInfluences(attributes, set, primitive); ++set) {
-        }
-        const json& targets = listOf(from, "targets");
-        memory_.take(place_ + ".targets", targets.size() * sizeof(MorphTarget), 0);
-        primitive.targets.reserve(targets.size());
-        for (std::size_t t = 0; t < targets.size(); ++t)
-            primitive.targets.push_back(target(targets[t], fmt::format("targets[{}].", t)));
-    }
-
-    /** Joints and weights of a set, if the primitive has it. */
-    bool readInfluences(const json& attributes, int set, Primitive& primitive) const {
-        const std::string jointsName = fmt::format("JOINTS_{}", set),
-                          weightsName = fmt::format("WEIGHTS_{}", set);
-        const auto joints = attributes.find(jointsName), weights = attributes.find(weightsName);
-        if ((joints == attributes.end()) != (weights == attributes.end())) {
-            throw InputError(asset_.file(), place_ + ".attributes",
-                             fmt::format("has one of {} and {}", jointsName, weightsName),
-                             "give both, or none");
-        }
-        if (joints == attributes.end()) return false;
-        const Component type = asset_.accessor(joints->get<int>()).component;
-        if (type != Component::UnsignedByte && type != Component::UnsignedShort) {
-            throw InputError(asset_.file(), place_ + ".attributes." + jointsName, "has the wrong type",
-                             "give unsigned bytes or shorts");
-        }
-        const std::vector<glm::vec4> numbers = attribute<glm::vec4>(jointsName, joints->get<int>());
-        primitive.joints.emplace_back(numbers.begin(), numbers.end());
-        primitive.weights.push_back(attribute<glm::vec4>(weightsName, weights->get<int>()));
-        return true;
-    }
-
-    MorphTarget target(const json& from, const std::string& place) const {
-        MorphTarget result;
-        for (const auto& [name, value] : from.items()) {
-            const int accessor = value.get<int>();
-            if (name == "POSITION") {
-                result.positions = attribute<glm::vec3>(name, accessor, place);
-            } else if (name == "NORMAL") {
-                result.normals = attribute<glm::vec3>(name, accessor, place);
-            } else if (name == "TANGENT") {
-                result.tangents = attribute<glm::vec3>(name, accessor, place);
-            } else if (!name.starts_with("_")) {
-                skip(scene_, "morph targets of " + name, "positions, normals and tangents are morphed");
-            }
-        }
-        return result;
-    }
-
-    void readColors(int accessor, Primitive& primitive) const {
-        if (asset_.accessor(accessor).components == 4 && !asset_.accessor(accessor).isMatrix) {
-            primitive.colors = attribute<glm::vec4>("COLOR_0", accessor);
-            return;
-        }
-        const std::vector<glm::vec3> colors = attribute<glm::vec3>("COLOR_0", accessor);
-        memory_.take(place_ + ".attributes.COLOR_0", colors.size() * (sizeof(glm::vec4) - sizeof(glm::vec3)),
-                     colors.size() * sizeof(glm::vec3));
-        primitive.colors.reserve(colors.size());
-        for (const glm::vec3& color : colors) primitive.colors.emplace_back(color, 1.0f);
-    }
-
-    void readIndices(const json& from, Primitive& primitive) {
-        std::vector<std::uint32_t> indices;
-        const std::string place = place_ + ".indices";
-        const int accessor = integerOr(from, "indices", -1);
-        const Mode mode = modeOf(from);
-        if (accessor >= 0) asset_.checkIndices(accessor, place);
-        const std::size_t count = accessor >= 0 ? asset_.count(accessor) : size_;
-        const std::size_t unfolded = mode == Mode::Triangles ? count : count * 3;
-        const std::size_t kept = unfolded * sizeof(std::uint32_t), read = count * sizeof(std::uint32_t);
-        if (accessor >= 0) {
-            memory_.takeFor(accessor, place, kept, read);
-        } else {
-            memory_.take(place, kept, read);
-        }
-        if (accessor >= 0) {
-            indices = asset_.indices(accessor, place);
-            const std::size_t wrong =
-                firstWhere(indices.size(), [&](std::size_t i) { return indices[i] >= size_; });
-            if (wrong < indices.size()) {
-                throw InputError(asset_.file(), place,
-                                 fmt::format("element {} is {}, the primitive has {} vertices", wrong,
-                                             indices[wrong], size_),
-                                 "keep indices below the number of vertices");
-            }
-        } else {
-            indices.resize(size_);
-            for (std::size_t i = 0; i < size_; ++i) indices[i] = std::uint32_t(i);
-        }
-        if (mode == Mode::Triangles && indices.size() % 3 != 0) {
-            warn(scene_, fmt::format("{}: {} indices are no whole triangles; the last are left out", place_,
-                                     indices.size()));
-            indices.resize(indices.size() / 3 * 3);
-        }
-        primitive.indices = triangles(std::move(indices), mode);
-    }
-
-    const Asset& asset_;
-    helio::Scene& scene_;
-    std::string place_;
-    MemoryBudget& memory_;
-    std::size_t size_ = 0;             ///< vertices in the file
-    std::vector<std::uint32_t> kept_;  ///< those that are kept; empty for all
-};
 
 void readVariantNames(const Asset& asset, MemoryBudget& memory, helio::Scene& scene) {
     const json* const extension = extensionOf(asset.document().root(), "KHR_materials_variants");
@@ -311,6 +37,140 @@ void readVariants(const json& from, const std::string& place, const helio::Scene
     }
 }
 
+/** Meshes in their order. Small primitives are decoded some ahead, side by side; each is then taken in its
+ * turn, so that notes, faults and what counts against the memory are those of one after the other. */
+class MeshBuilder {
+public:
+    MeshBuilder(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene)
+        : asset_(asset), memory_(memory), monitor_(monitor), scene_(scene) {}
+
+    void build() {
+        const Document& document = asset_.document();
+        const std::size_t count = document.size("meshes");
+        memory_.take("meshes", count * sizeof(Mesh), 0);
+        scene_.meshes.reserve(count);
+        while (scene_.meshes.size() < count) {
+            first_ = scene_.meshes.size();
+            std::size_t end = first_, text = 0;  // at least one, and as many as have little text
+            do text += document.textBytes("meshes", end++);
+            while (end < count && text + document.textBytes("meshes", end) <= aheadText);
+            meshes_.assign(end - first_, {});
+            tbb::parallel_for(std::size_t(0), meshes_.size(),
+                              [&](std::size_t i) { meshes_[i] = document.element("meshes", first_ + i); });
+            buildBatch(double(first_) / double(count), double(end) / double(count));
+        }
+    }
+
+private:
+    /** Of JSON, whose parsed form takes twelve times as much; and elements of accessors, each of 16 bytes at
+     * most, three times while it is decoded. */
+    static constexpr std::size_t aheadText = std::size_t(1) << 16, aheadElements = std::size_t(1) << 18,
+                                 aheadCount = 1024, aheadBytes = aheadElements * 48;
+
+    struct Unit {
+        std::size_t mesh, primitive;
+        Primitive built;
+        helio::Scene notes;
+        std::optional<MemoryBudget> taken;  ///< where it was decoded ahead
+    };
+
+    const json& from(const Unit& unit) const { return meshes_[unit.mesh]["primitives"][unit.primitive]; }
+    std::string place(const Unit& unit) const {
+        return fmt::format("meshes[{}].primitives[{}]", first_ + unit.mesh, unit.primitive);
+    }
+    bool isShown(const Unit& unit) const { return modeOf(from(unit)) >= Mode::Triangles; }
+
+    void buildBatch(double done, double end) {
+        std::size_t all = 0, at = 0;
+        for (const json& mesh : meshes_) all += mesh["primitives"].size();
+        Unit next{0, 0, {}, {}, {}};
+        while (next.mesh < meshes_.size()) {
+            monitor_.report("geometry", done + (end - done) * double(at) / double(all));
+            std::vector<Unit> units;
+            std::size_t elements = 0;
+            for (; next.mesh < meshes_.size() && units.size() < aheadCount; advance(next)) {
+                elements += isShown(next) ? elementsOf(asset_, from(next)) : 0;
+                if (elements > aheadElements && !units.empty()) break;
+                units.push_back({next.mesh, next.primitive, {}, {}, {}});
+            }
+            at += units.size();
+            if (units.size() > 1 && memory_.left() >= aheadBytes) {
+                tbb::parallel_for(tbb::blocked_range<std::size_t>(0, units.size(), 8),
+                                  [&](const auto& range) {
+                                      for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                          decodeAhead(units[i]);
+                                  });
+            }
+            for (Unit& unit : units) take(unit);
+        }
+    }
+
+    void advance(Unit& unit) const {
+        if (++unit.primitive < meshes_[unit.mesh]["primitives"].size()) return;
+        ++unit.mesh;
+        unit.primitive = 0;
+    }
+
+    void decodeAhead(Unit& unit) const {
+        if (!isShown(unit)) return;
+        MemoryBudget taken = MemoryBudget::notesOf(asset_);
+        try {
+            unit.built = readPrimitive(asset_, from(unit), place(unit), taken, unit.notes);
+            unit.taken.emplace(std::move(taken));
+        } catch (const InputError&) {
+            unit.built = {};  // told in its turn
+        }
+    }
+
+    void take(Unit& unit) {
+        const json& mesh = meshes_[unit.mesh];
+        const json &primitives = mesh["primitives"], &primitive = from(unit);
+        const std::size_t index = first_ + unit.mesh, targets = listOf(primitives[0], "targets").size();
+        if (unit.primitive == 0) {
+            memory_.take(fmt::format("meshes[{}].primitives", index), primitives.size() * sizeof(Primitive),
+                         0);
+            Mesh& made = scene_.meshes.emplace_back();
+            made.primitives.reserve(primitives.size());
+            made.name = mesh.value("name", "");
+        }
+        Mesh& made = scene_.meshes.back();
+        if (const std::size_t own = listOf(primitive, "targets").size(); own != targets) {
+            throw InputError(asset_.file(), place(unit) + ".targets",
+                             fmt::format("has {} elements, the mesh's first primitive {}", own, targets),
+                             "give every primitive of a mesh as many morph targets");
+        }
+        if (isShown(unit)) {
+            for (const auto& [name, value] : extensionsOf(primitive).items()) {
+                if (!isSupported(name)) skip(scene_, name, "is not supported");
+            }
+            decode(unit);
+            readVariants(primitive, place(unit), scene_, memory_, unit.built);
+            if (!unit.built.indices.empty()) made.primitives.push_back(std::move(unit.built));
+        } else {
+            skip(scene_, modeOf(primitive) == Mode::Points ? "points" : "lines", "only triangles are shown");
+        }
+        if (unit.primitive + 1 == primitives.size() && !made.primitives.empty())
+            made.weights = morphWeights(asset_, mesh, targets, fmt::format("meshes[{}].weights", index));
+    }
+
+    void decode(Unit& unit) {
+        if (unit.taken) {
+            memory_.take(*unit.taken);
+            for (const auto& [what, why] : unit.notes.skipped) skip(scene_, what, why);
+            for (const std::string& warning : unit.notes.warnings) warn(scene_, warning);
+        } else {
+            unit.built = readPrimitive(asset_, from(unit), place(unit), memory_, scene_);
+        }
+    }
+
+    const Asset& asset_;
+    MemoryBudget& memory_;
+    LoadMonitor& monitor_;
+    helio::Scene& scene_;
+    std::size_t first_ = 0;     ///< mesh of the batch
+    std::vector<json> meshes_;  ///< of the batch
+};
+
 }  // namespace
 
 std::vector<float> morphWeights(const Asset& asset, const json& object, std::size_t targets,
@@ -329,41 +189,7 @@ std::vector<float> morphWeights(const Asset& asset, const json& object, std::siz
 
 void buildMeshes(const Asset& asset, MemoryBudget& memory, LoadMonitor& monitor, helio::Scene& scene) {
     readVariantNames(asset, memory, scene);
-    const std::size_t count = asset.document().size("meshes");
-    memory.take("meshes", count * sizeof(Mesh), 0);
-    scene.meshes.reserve(count);
-    for (std::size_t m = 0; m < count; ++m) {
-        const json from = asset.document().element("meshes", m);
-        const json& primitives = from["primitives"];
-        Mesh mesh;
-        memory.take(fmt::format("meshes[{}].primitives", m), primitives.size() * sizeof(Primitive), 0);
-        mesh.primitives.reserve(primitives.size());
-        mesh.name = from.value("name", "");
-        const std::size_t targets = listOf(primitives[0], "targets").size();
-        for (std::size_t p = 0; p < primitives.size(); ++p) {
-            const json& primitive = primitives[p];
-            monitor.report("geometry", (double(m) + double(p) / double(primitives.size())) / double(count));
-            const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
-            if (const std::size_t own = listOf(primitive, "targets").size(); own != targets) {
-                throw InputError(asset.file(), place + ".targets",
-                                 fmt::format("has {} elements, the mesh's first primitive {}", own, targets),
-                                 "give every primitive of a mesh as many morph targets");
-            }
-            if (const Mode mode = modeOf(primitive); mode < Mode::Triangles) {
-                skip(scene, mode == Mode::Points ? "points" : "lines", "only triangles are shown");
-                continue;
-            }
-            for (const auto& [name, value] : extensionsOf(primitive).items()) {
-                if (!isSupported(name)) skip(scene, name, "is not supported");
-            }
-            Primitive built = PrimitiveBuilder(asset, scene, place, memory).build(primitive);
-            readVariants(primitive, place, scene, memory, built);
-            if (!built.indices.empty()) mesh.primitives.push_back(std::move(built));
-        }
-        if (!mesh.primitives.empty())
-            mesh.weights = morphWeights(asset, from, targets, fmt::format("meshes[{}].weights", m));
-        scene.meshes.push_back(std::move(mesh));
-    }
+    MeshBuilder(asset, memory, monitor, scene).build();
 }
 
 }  // namespace helio::gltf
