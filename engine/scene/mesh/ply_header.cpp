@@ -145,6 +145,13 @@ private:
         property.type = *type;
         property.name = takeWord(line);
         if (property.name.empty()) refuse("a property has no name", "give it one");
+        // Blender to 2.79 writes no line for the faces of a mesh that has none, but for their list.
+        const bool isOfFaces = property.name == "vertex_indices" || property.name == "vertex_index";
+        if (property.isList && isOfFaces && header_.elements.back().name == "vertex") {
+            header_.unknown.push_back(fmt::format("line {}: {} is of faces, which no element names; left out",
+                                                  line_, property.name));
+            return;
+        }
         header_.elements.back().properties.push_back(std::move(property));
     }
 

@@ -91,6 +91,34 @@ TEST_F(MeshFile, PlyPolygonsStripsAndOtherElements) {
     EXPECT_EQ(indices, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2, 0, 1, 3}));
 }
 
+TEST_F(MeshFile, PlyOfMoreStripsThanAFaceMayHaveCorners) {
+    constexpr std::size_t strips = (std::size_t(1) << 20) + 1;  // of four corners each, and a -1 between them
+    std::string file = "ply\nformat binary_little_endian 1.0\n" + vertexHeader +
+                       "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    const auto put = [&file](auto value) {
+        file.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const float value : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}) put(value);
+    put(std::int32_t(strips * 5));
+    for (std::size_t i = 0; i < strips; ++i)
+        for (const std::int32_t corner : {0, 1, 2, 3, -1}) put(corner);
+    const Scene scene = load("strips.ply", file);
+    EXPECT_EQ(scene.triangleCount(), strips * 2);
+    const auto& indices = scene.meshes[0].primitives.at(0).indices;
+    EXPECT_EQ(std::vector<std::uint32_t>(indices.end() - 6, indices.end()),
+              (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+}
+
+TEST_F(MeshFile, PlyOfBlenderWithoutFaces) {
+    const Scene scene = load("a.ply",
+                             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                             "property float z\nproperty list uchar uint vertex_indices\nend_header\n"
+                             "0 0 0\n1 0 0\n0 1 0\n");
+    EXPECT_EQ(scene.triangleCount(), 0u);
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    EXPECT_EQ(scene.warnings[0], "line 7: vertex_indices is of faces, which no element names; left out");
+}
+
 TEST_F(MeshFile, PlyTextureFile) {
     ImageF image;
     image.width = image.height = 2;
