@@ -17,13 +17,18 @@ constexpr const char* frameName = "heliograph.frame";
 
 PlacedCamera frameAround(Scene& scene, double aspect) {
     const Scene::Bounds bounds = scene.bounds();
-    glm::dvec3 centre(0.0);
+    glm::dvec3 centre(0.0), forward(0, -0.5, -1), right(1, 0, 0);
     double radius = 0;
     if (!bounds.empty()) {
         centre = 0.5 * bounds.lower + 0.5 * bounds.upper;
         radius = glm::length(0.5 * bounds.upper - 0.5 * bounds.lower);
         // A point, or what single precision cannot tell from one at this distance from the origin.
         radius = std::max(radius, std::ldexp(glm::length(centre), -22));
+        // A picture that stands across the x axis would be seen from its edge.
+        if (bounds.upper.x - bounds.lower.x <= radius / 1000) {
+            forward = {-1, -0.5, 0};
+            right = {0, 0, -1};
+        }
     }
     if (!(radius > 0)) radius = 1;
 
@@ -32,8 +37,7 @@ PlacedCamera frameAround(Scene& scene, double aspect) {
     const double halfAngle = std::atan(halfHeight * std::min(aspect, 1.0));
     const double distance = radius / std::sin(halfAngle);
 
-    const glm::dvec3 forward = glm::normalize(glm::dvec3(0, -0.5, -1));
-    const glm::dvec3 right(1, 0, 0);
+    forward = glm::normalize(forward);
     const glm::dvec3 up = glm::cross(right, forward);
     PlacedCamera placed;
     placed.transform = glm::dmat4(glm::dvec4(right, 0), glm::dvec4(up, 0), glm::dvec4(-forward, 0),

@@ -213,6 +213,24 @@ TEST(ChooseView, FramesASceneWithoutACameraAndLeavesItAsItWas) {
     EXPECT_NE(framed.transform, own.transform);
 }
 
+TEST(ChooseView, FramesAFlatPictureFromItsFace) {
+    for (int flat = 0; flat < 3; ++flat) {
+        Scene scene = load("sample:cornell");
+        for (Node& node : scene.nodes) node.camera = -1;
+        glm::dmat4 squeezed(1.0);
+        squeezed[flat][flat] = 1e-9;
+        Node parent;
+        parent.matrix = glm::mat4(squeezed);
+        parent.children = scene.roots;
+        scene.roots = {int(scene.nodes.size())};
+        scene.nodes.push_back(parent);
+        const glm::dvec3 axis = View(chooseView(scene, "", 1)).transform[2];  // away from what is seen
+        EXPECT_GT(std::abs(axis[flat]), 0.4) << flat;
+        EXPECT_NEAR(glm::length(axis), 1, 1e-6);
+        EXPECT_NEAR(std::abs(axis.y), std::sqrt(0.2), 1e-6);
+    }
+}
+
 TEST(ProcessClock, KnowsTheProcess) {
     EXPECT_GE(secondsSinceProcessStart(), 0);
     EXPECT_LT(secondsSinceProcessStart(), 3600);
