@@ -55,6 +55,7 @@ PreparedScene::PreparedScene(Device& device, const Scene& scene, std::span<const
     bounds.lower -= origin;
     bounds.upper -= origin;
     warnOfPrecision(scene, warnings);
+    warnOfProportions(scene, warnings);
     const SceneFeatures all(scene);
     features = all.present();
     for (const SceneFeatures::Absent& absent : all.absent()) skipped.emplace_back(absent.name, absent.why);

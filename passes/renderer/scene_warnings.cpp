@@ -3,10 +3,13 @@
 #include "passes/scene/material_layout.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 
 namespace helio {
@@ -42,6 +45,42 @@ std::vector<bool> shownMeshes(const Scene& scene) {
     std::vector<bool> shown(scene.meshes.size(), false);
     for (const Instance& instance : scene.instances()) shown[std::size_t(instance.mesh)] = true;
     return shown;
+}
+
+/** Longest edge over the height upon it is more than kLargestAspect; not those without any area. */
+bool isSliver(const Primitive& primitive, std::size_t triangle) {
+    const std::uint32_t* const corner = &primitive.indices[3 * triangle];
+    const glm::dvec3 a(primitive.positions[corner[0]]), b(primitive.positions[corner[1]]),
+        c(primitive.positions[corner[2]]);
+    const glm::dvec3 u = b - a, v = c - a, w = c - b;
+    const double twiceArea = glm::length(glm::cross(u, v));
+    const double longest = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(w, w)});
+    return twiceArea > 0 && longest > kLargestAspect * twiceArea;
+}
+
+std::size_t sliversOf(const Primitive& primitive) {
+    using Range = tbb::blocked_range<std::size_t>;
+    return tbb::parallel_reduce(
+        Range(0, primitive.indices.size() / 3, 16384), std::size_t(0),
+        [&](const Range& range, std::size_t count) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t) count += isSliver(primitive, t) ? 1 : 0;
+            return count;
+        },
+        std::plus<>());
+}
+
+/** Largest extent of a mesh along an axis, shapes left out. */
+double extentOf(const Mesh& mesh) {
+    glm::vec3 lower(std::numeric_limits<float>::infinity()), upper = -lower;
+    for (const Primitive& primitive : mesh.primitives) {
+        if (primitive.shape) continue;
+        for (const glm::vec3& p : primitive.positions) {
+            lower = glm::min(lower, p);
+            upper = glm::max(upper, p);
+        }
+    }
+    const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
+    return std::max({size.x, size.y, size.z, 0.0});
 }
 
 }  // namespace
@@ -113,6 +152,44 @@ void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings) {
         });
     }
     farMeshes.addTo(warnings, "meshes");
+}
+
+void warnOfProportions(const Scene& scene, std::vector<std::string>& warnings) {
+    const std::vector<bool> shown = shownMeshes(scene);
+    std::size_t slivers = 0;
+    std::vector<double> extents;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        extents.push_back(shown[m] ? extentOf(scene.meshes[m]) : 0);
+        for (const Primitive& primitive : scene.meshes[m].primitives)
+            if (shown[m] && !primitive.shape) slivers += sliversOf(primitive);
+    }
+    if (slivers > 0) {
+        warnings.push_back(
+            fmt::format("{} triangle{} more than {:g} times as long as wide: rays that leave {} may start in "
+                        "a neighbour, "
+                        "and light be off by a percent; cut {} across",
+                        slivers, slivers == 1 ? " is" : "s are", kLargestAspect, slivers == 1 ? "it" : "them",
+                        slivers == 1 ? "it" : "them"));
+    }
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+    int largestMesh = -1;
+    for (const Instance& instance : scene.instances()) {
+        double scale = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            scale = std::max(scale, glm::length(glm::dvec3(instance.transform[axis])));
+        const double extent = extents[std::size_t(instance.mesh)] * scale;
+        if (!(extent > 0)) continue;
+        smallest = std::min(smallest, extent);
+        if (extent > largest) largestMesh = instance.mesh;
+        largest = std::max(largest, extent);
+    }
+    if (largest > kLargestContrast * smallest) {
+        warnings.push_back(fmt::format(
+            "mesh {} is {:.2g} times as large as the smallest mesh: single precision places points on it by "
+            "steps of {:.1g} of that one's size; use a smaller one, or an environment in its place",
+            largestMesh, largest / smallest,
+            largest / smallest * double(std::numeric_limits<float>::epsilon())));
+    }
 }
 
 }  // namespace helio

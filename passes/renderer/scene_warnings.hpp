@@ -24,4 +24,13 @@ void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vecto
 inline constexpr double kFarthestVertices = 1e5;
 void warnOfPrecision(const Scene& scene, std::vector<std::string>& warnings);
 
+/** Triangles so many times as long as wide that a ray which leaves one may start in its neighbour: right to
+ * 1e-3 at 1e6, off by a percent at 1e7. */
+inline constexpr double kLargestAspect = 2e6;
+/** Meshes so many times as large as the smallest of the scene: the float steps of distances to them are then
+ * a hundred times the small one. A square lamp is right at 3e7 times its distance, of half the light at 1e9.
+ */
+inline constexpr double kLargestContrast = 1e9;
+void warnOfProportions(const Scene& scene, std::vector<std::string>& warnings);
+
 }  // namespace helio

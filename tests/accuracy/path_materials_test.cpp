@@ -209,6 +209,29 @@ TEST(GltfMaterials, DefaultMaterialFromAboveIsOneMinusLnTwo) {
     expectMean(plate(p.render(1024), 0), 1 - std::numbers::ln2, 4e-3L, "default");
 }
 
+/** A smooth coat over black reflects by the angle to its own normal, which a map tilts across the view: 60
+ * degrees to the plate's normal are 64 to one that leans by 30. */
+TEST(GltfMaterials, CoatsHaveANormalOfTheirOwn) {
+    Plates p;
+    Material coated = gltf(glm::vec3(0), 0, 1);
+    coated.specular = 0;
+    coated.clearcoat = 1;
+    p.add("coat", coated);
+    Scene& scene = p.b.scene;
+    scene.images.push_back({"tilt", 1, 1, std::vector<float>{0.75f, 0.5f, 0.5f + std::sqrt(0.1875f), 1}});
+    Texture tilt;
+    tilt.image = 0;
+    scene.textures.push_back(tilt);
+    coated.clearcoatNormalTexture.texture = 0;
+    p.add("coat that leans by 30 degrees", coated);
+    scene.environment = Environment{glm::vec3(1), -1};
+    p.view(60);
+    const Traced image = p.render(1024);
+    const auto reflected = [](double cosine) { return 0.04L + 0.96L * std::pow(1 - cosine, 5); };
+    expectMean(plate(image, 0), reflected(0.5L), 3e-3L, p.names[0]);
+    expectMean(plate(image, 1), reflected(0.5L * std::sqrt(0.75L)), 3e-3L, p.names[1]);
+}
+
 /** What loses no light is invisible: smooth and rough glass, mirrors, made-up facets, tilted normals. */
 TEST(Furnace, LosslessMaterialsVanish) {
     Plates p;

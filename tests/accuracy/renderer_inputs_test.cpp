@@ -202,6 +202,33 @@ TEST(RendererInputs, VerticesTooFarFromTheirOriginAreWarnedOf) {
     }
 }
 
+TEST(RendererInputs, TrianglesAndMeshesOutOfProportionAreWarnedOf) {
+    const auto warnings = [](const Scene& scene) {
+        return renderer().render(scene, small(Pipeline::Raster)).warnings;
+    };
+    for (const float width : {1e-5f, 1e-6f}) {  // times as long as wide: 1e6, 1e7
+        Scene scene = glowingSquare();
+        for (glm::vec3& p : scene.meshes[0].primitives[0].positions) p.y *= 0.1f * width;
+        const std::vector<std::string> said = warnings(scene);
+        ASSERT_EQ(said.size(), width < 5e-6f ? 1u : 0u) << width;
+        if (!said.empty()) {
+            EXPECT_NE(said[0].find("2 triangles are more than"), std::string::npos) << said[0];
+        }
+    }
+    for (const float size : {1e8f, 1e10f}) {
+        Scene scene = glowingSquare();
+        Node large = scene.nodes[0];
+        large.scale = glm::vec3(size);
+        scene.nodes.push_back(large);
+        scene.roots.push_back(2);
+        const std::vector<std::string> said = warnings(scene);
+        ASSERT_EQ(said.size(), size > 1e9f ? 1u : 0u) << size;
+        if (!said.empty()) {
+            EXPECT_NE(said[0].find("times as large as the smallest mesh"), std::string::npos) << said[0];
+        }
+    }
+}
+
 /** A camera's exposure is for the light of the scene: what has none is not shown black. */
 TEST(RendererInputs, TheDefaultLightIsNotExposed) {
     Scene scene = glowingSquare();

@@ -118,6 +118,36 @@ TEST(Extremes, SliversAndNeedles) {
     }
 }
 
+/** A plane of triangles as small as a hundred times the rounding of their corners: a ray that leaves one must
+ * not meet its neighbours. Every path of the plane's open side brings half of the sky's light. */
+TEST(Extremes, NeighboursInAPlaneCastNoShadows) {
+    SceneBuilder b;
+    const int grey = b.material(glm::vec3(0.5f));
+    const glm::dvec3 middle(0.7, 0.9, -0.4), normal = glm::normalize(glm::dvec3(0.3, -0.5, 0.81));
+    const glm::dvec3 across = glm::normalize(glm::cross(normal, glm::dvec3(0, 1, 0)));
+    const glm::dvec3 up = glm::cross(normal, across);
+    constexpr int cells = 64;
+    constexpr double cell = 2e-5;
+    const auto at = [&](int i, int j) {
+        return glm::vec3(middle + cell * (double(i - cells / 2) * across + double(j - cells / 2) * up));
+    };
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < cells; ++i)
+        for (int j = 0; j < cells; ++j)
+            for (const glm::vec3& p :
+                 {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)})
+                corners.push_back(p);
+    b.triangles(corners, grey);
+    // As far on the other side of the origin, so that the scene's middle is there; behind the plane.
+    const glm::vec3 other = -2.0f * glm::vec3(normal) - glm::vec3(middle);
+    b.quad(other, other + glm::vec3(across) * 0.1f, other + glm::vec3(across + up) * 0.1f,
+           other + glm::vec3(up) * 0.1f, grey);
+    b.camera(glm::vec3(middle + 2e-4 * normal), glm::vec3(middle), 1.0f, glm::vec3(up));
+    b.scene.environment = Environment{glm::vec3(1.0f), -1};
+    const Mean mean = meanOf(rendered(b.scene, options(16, 256)).image);
+    EXPECT_NEAR(mean.value, 0.5, 2e-4);
+}
+
 TEST(Extremes, NearAndFarInOnePicture) {
     // A card a millionth away before one a million away: depths of ratio 1e12.
     SceneBuilder b;
