@@ -23,6 +23,11 @@ constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, k
                         kMoreGroups = 64, kFreshGroups = 80;
 constexpr std::uint32_t kTallTiles = 4;         // of a workgroup of rasterTileTall
 constexpr std::uint32_t kSetupTriangles = 512;  // of a workgroup of set-up
+// As in shaders/raster/cluster.glsl.
+constexpr std::uint32_t kClusterTriangles = RasterClusters::kTriangles;
+constexpr std::uint64_t kClusterStateBytes = 64, kDepthGroups = 24, kPyramidGroups = 36, kTestGroups = 48;
+constexpr std::uint32_t kDepthCell = 16;
+constexpr std::uint32_t kClustersAtOnce = 1u << 20;  // of a dispatch
 
 std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
     std::uint64_t cells = 0;
@@ -72,7 +77,7 @@ std::uint64_t rasterStride(std::uint32_t width, std::uint32_t height) {
 }
 
 RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
-                                     std::shared_ptr<const RasterView> view) const {
+                                     std::shared_ptr<const RasterView> view, RasterClusters* clusters) const {
     assert(view != nullptr);
     checkSize(view->width, view->height, maxStorageBufferRange_);
     RasterOutput output;
@@ -80,7 +85,7 @@ RasterOutput RasterPipeline::declare(Graph& graph, const RasterTriangles& triang
     output.counters = graph.buffer("raster.counters", {sizeof(RasterCounters)});
     graph.fill("raster.clear", output.visibility, 0);
     graph.fill("raster.clearCounters", output.counters, 0);
-    declare(graph, triangles, std::move(view), {output.visibility, 0, output.counters});
+    declare(graph, triangles, std::move(view), {output.visibility, 0, output.counters, {}, clusters});
     return output;
 }
 
@@ -92,7 +97,9 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
     if (triangles.count == 0) return;
     const Window window{target.offset, std::uint64_t(width) * height * 8};
 
-    const std::uint32_t batch = std::min(options_.batch, triangles.count);
+    std::uint32_t batch = std::min(options_.batch, triangles.count);
+    // Workgroups of set-up take whole clusters.
+    if (target.clusters) batch = std::max(batch / kSetupTriangles, 1u) * kSetupTriangles;
     const std::uint64_t cells = cellCount(width, height);
     const std::uint64_t records = std::uint64_t(batch) * kClipParts;
     // No record may need more entries than there are cells; and each must find room for at least one.
@@ -123,30 +130,44 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
         return options;
     };
     graph.fill("raster.clearCounts", counts, 0);
-    for (std::uint32_t first = 0; first < triangles.count; first += batch) {
-        const std::uint32_t count = std::min(batch, triangles.count - first);
-        const std::uint32_t flags = options_.cullBackFaces ? kRasterCullBack : 0u;
-        const auto push = [view, flags, first, count, orthographic, depth = options_.depth] {
-            assert(view->orthographic == orthographic);
-            assert(orthographic || depth == DepthFormat::Reversed || view->depthSlope > 0);
-            return makeRasterPush(*view, flags, first, count);
-        };
-
-        graph.fill("raster.clearState", state, 0);
-        graph.compute("raster.setup", kernel(shaders::rasterSetup), projection)
+    const std::uint32_t flags = options_.cullBackFaces ? kRasterCullBack : 0u;
+    const auto pushOf = [view, flags, orthographic, depth = options_.depth](std::uint32_t first,
+                                                                            std::uint32_t count) {
+        assert(view->orthographic == orthographic);
+        assert(orthographic || depth == DepthFormat::Reversed || view->depthSlope > 0);
+        return makeRasterPush(*view, flags, first, count);
+    };
+    const auto setUp = [&](const Kernel& plain, const ComputeOptions& options) {
+        return graph.compute("raster.setup", kernel(plain), options)
             .reads({{"uTriangles", triangles.buffer}})
             .reads(limit)
             .modifies({{"uVisibility", target.visibility, window},
                        {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
                        {"uState", state},
                        {"uCounters", target.counters}})
-            .overwrites({{"uLarge", large}, {"uClipped", clipped}})
-            .record([push, count](Commands& c) {
-                c.push(push()).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
-            });
-        graph.compute("raster.plan", shaders::rasterPlan)
-            .modifies({{"uState", state}})
-            .record([entries](Commands& c) { c.push(std::uint32_t(entries)).dispatch(1); });
+            .overwrites({{"uLarge", large}, {"uClipped", clipped}});
+    };
+    Buffer clusterState;
+    // Draws what `setUpBatch` lists; `isFirst`: nothing has been drawn before; `once`: where in clusterState
+    // it says whether there is anything.
+    const auto drawBatch = [&](bool isFirst, std::optional<std::uint64_t> once, const auto& setUpBatch) {
+        const auto push = [pushOf] { return pushOf(0, 0); };
+        graph.fill("raster.clearState", state, 0);
+        setUpBatch();
+        // One workgroup; none where culling has left nothing.
+        const auto dispatchOnce = [clusterState](Commands& c, std::optional<std::uint64_t> groups) {
+            if (groups)
+                c.dispatchIndirect(clusterState, *groups);
+            else
+                c.dispatch(1);
+        };
+        Pass plan = graph.compute("raster.plan", shaders::rasterPlan)
+                        .modifies({{"uState", state}})
+                        .record([entries, dispatchOnce, once](Commands& c) {
+                            c.push(std::uint32_t(entries));
+                            dispatchOnce(c, once);
+                        });
+        if (once) plan.indirect(clusterState);
         graph.compute("raster.large", shaders::rasterLarge, projection)
             .reads({{"uTriangles", triangles.buffer}, {"uState", state}, {"uLarge", large}})
             .overwrites({{"uRecords", record}})
@@ -163,12 +184,16 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
         const bool tall = options_.stripRows == 8;
         ComputeOptions grouped;
         grouped.spec["GROUP_TILES"] = paired && tall ? kTallTiles : 1u;
-        grouped.spec["MAY_START_FRESH"] = paired && first == 0;
-        graph.compute("raster.scan", shaders::rasterScan, grouped)
-            .reads({{"uCounts", counts}})
-            .overwrites({{"uStarts", starts}, {"uTiles", tiles}})
-            .modifies({{"uState", state}, {"uCounters", target.counters}})
-            .record([push](Commands& c) { c.push(push()).dispatch(1); });
+        grouped.spec["MAY_START_FRESH"] = paired && isFirst;
+        Pass scan = graph.compute("raster.scan", shaders::rasterScan, grouped)
+                        .reads({{"uCounts", counts}})
+                        .overwrites({{"uStarts", starts}, {"uTiles", tiles}})
+                        .modifies({{"uState", state}, {"uCounters", target.counters}})
+                        .record([push, dispatchOnce, once](Commands& c) {
+                            c.push(push());
+                            dispatchOnce(c, once);
+                        });
+        if (once) scan.indirect(clusterState);
         graph.compute("raster.fill", shaders::rasterFill)
             .reads({{"uRecords", record}, {"uState", state}, {"uStarts", starts}})
             .modifies({{"uCounts", counts}})
@@ -199,13 +224,101 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
             drawTiles(name, tileKernel, options, groups)
                 .modifies({{"uVisibilityTexels", target.visibility, window, Format::RGBA32UI}});
         };
-        if (paired && first == 0) drawPaired("raster.tileFresh", true, kFreshGroups);
+        if (paired && isFirst) drawPaired("raster.tileFresh", true, kFreshGroups);
         if (paired)
             drawPaired("raster.tile", false, kTileGroups);
         else
             drawTiles("raster.tile", shaders::rasterTileMore, tiled(0), kTileGroups);
         drawTiles("raster.tileMore", shaders::rasterTileMore, tiled(1), kMoreGroups);
+    };
+
+    if (!target.clusters) {
+        for (std::uint32_t first = 0; first < triangles.count; first += batch) {
+            const std::uint32_t count = std::min(batch, triangles.count - first);
+            drawBatch(first == 0, {}, [&] {
+                setUp(shaders::rasterSetup, projection).record([pushOf, first, count](Commands& c) {
+                    c.push(pushOf(first, count)).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
+                });
+            });
+        }
+        return;
     }
+
+    const std::uint32_t clusters = target.clusters->count(), triangleCount = triangles.count;
+    assert(clusters == (triangleCount + kClusterTriangles - 1) / kClusterTriangles);
+    const std::uint32_t inBatch = batch / kClusterTriangles, batches = (clusters + inBatch - 1) / inBatch;
+    const std::uint32_t cellsX = (width + kDepthCell - 1) / kDepthCell,
+                        cellsY = (height + kDepthCell - 1) / kDepthCell;
+    std::uint64_t pyramidCells = 0;
+    for (std::uint32_t level = 0;; ++level) {
+        const std::uint64_t x = (cellsX + (1u << level) - 1) >> level,
+                            y = (cellsY + (1u << level) - 1) >> level;
+        pyramidCells += x * y;
+        if (x == 1 && y == 1) break;
+    }
+    clusterState = graph.buffer("raster.clusterState", {kClusterStateBytes + std::uint64_t(batches) * 48});
+    const Buffer list = graph.buffer("raster.clusterList", {std::uint64_t(clusters) * 8});
+    const Buffer pyramid = graph.buffer("raster.pyramid", {pyramidCells * 4}),
+                 found = graph.buffer("raster.clustersFound", {4});
+    const Buffer bounds = graph.import(target.clusters->bounds()),
+                 seen = graph.import(target.clusters->seen());
+    graph.fill("raster.clearClusters", clusterState, 0);
+    graph.fill("raster.clearList", list, 0);
+    graph.fill("raster.clearFound", found, 0);
+    graph.compute("raster.cull", shaders::rasterCull, projection)
+        .reads({{"uBounds", bounds, Format::RGBA32F}})
+        .modifies({{"uSeen", seen}, {"uClusterState", clusterState}, {"uCounters", target.counters}})
+        .modifies({{"uList", list}})
+        .record([pushOf, clusters, triangleCount](Commands& c) {
+            for (std::uint32_t first = 0; first < clusters; first += kClustersAtOnce)
+                c.push(pushOf(first, triangleCount))
+                    .dispatchInvocations(std::min(kClustersAtOnce, clusters - first));
+        });
+    const auto drawPhase = [&](std::int32_t phase) {
+        graph.compute("raster.clusterPlan", shaders::rasterClusterPlan, {.spec = {{"PHASE", phase}}})
+            .modifies({{"uState", clusterState}})
+            .reads({{"uFound", found}})
+            .record([=](Commands& c) {
+                c.push(std::array{clusters, inBatch, batches, cellsX | cellsY << 16}).dispatch(1);
+            });
+        ComputeOptions options = projection;
+        options.spec["PHASE"] = phase;
+        for (std::uint32_t k = 0; k < batches; ++k) {
+            const std::uint64_t groups = kClusterStateBytes + (std::uint64_t(phase) * batches + k) * 24;
+            drawBatch(phase == 0 && k == 0, groups + 12, [&] {
+                setUp(shaders::rasterSetupClusters, options)
+                    .reads({{"uClusterList", list, Format::R32UI},
+                            {"uClusterState", clusterState, Format::R32UI}})
+                    .indirect(clusterState)
+                    .record([=](Commands& c) {
+                        c.push(pushOf(k * inBatch, triangleCount)).dispatchIndirect(clusterState, groups);
+                    });
+            });
+        }
+    };
+    drawPhase(0);
+    graph.compute("raster.depths", shaders::rasterDepths)
+        .reads({{"uVisibility", target.visibility, window, Format::RG32UI}})
+        .overwrites({{"uPyramid", pyramid}})
+        .indirect(clusterState)
+        .record([=](Commands& c) { c.push(pushOf(0, 0)).dispatchIndirect(clusterState, kDepthGroups); });
+    graph.compute("raster.pyramid", shaders::rasterPyramid)
+        .modifies({{"uPyramid", pyramid}})
+        .indirect(clusterState)
+        .record([=](Commands& c) { c.push(pushOf(0, 0)).dispatchIndirect(clusterState, kPyramidGroups); });
+    graph.compute("raster.cullHidden", shaders::rasterCullHidden, projection)
+        .reads({{"uBounds", bounds, Format::RGBA32F}, {"uPyramid", pyramid, Format::R32UI}})
+        .reads({{"uClusterState", clusterState}})
+        .modifies({{"uFound", found}, {"uList", list}, {"uCounters", target.counters}})
+        .indirect(clusterState)
+        .record([=](Commands& c) {
+            c.push(pushOf(0, triangleCount)).dispatchIndirect(clusterState, kTestGroups);
+        });
+    drawPhase(1);
+    graph.compute("raster.mark", shaders::rasterMark)
+        .reads({{"uVisibility", target.visibility, window, Format::RG32UI}})
+        .writes({{"uSeen", seen}})
+        .record([=](Commands& c) { c.push(pushOf(0, 0)).dispatchOver((width + 1) / 2, (height + 1) / 2); });
 }
 
 }  // namespace helio

@@ -9,6 +9,7 @@
  * kernel that owns the tile. Nearer wins, and of equal depths the smaller id: the order of triangles has no
  * influence.
  */
+#include "passes/raster/raster_clusters.hpp"
 #include "passes/raster/view.hpp"
 
 #include <heliograph/device.hpp>
@@ -55,6 +56,11 @@ struct RasterCounters {
     std::uint64_t parts = 0;         ///< triangles that clipping made
     std::uint64_t entries = 0;       ///< entries of the tiles' lists
     std::uint64_t tileVisited = 0;   ///< triangles times tiles that the tile kernel tested
+    std::uint64_t hidden =
+        0;  ///< triangles of clusters behind all that is drawn where they are; never set up
+    std::uint64_t clusters = 0;         ///< looked at, where clusters are culled
+    std::uint64_t clustersOutside = 0;  ///< of these, wholly outside the view; their triangles are `outside`
+    std::uint64_t clustersHidden = 0;   ///< of these, behind all that is drawn where they are
 };
 
 /** What the rasterizer leaves in the graph. */
@@ -76,6 +82,9 @@ struct RasterTarget {
     Buffer counters;           ///< added to
     /** Peeling: of each pixel only keys below this buffer's (as many as keys) are drawn; none: all are. */
     std::optional<Buffer> limit = {};
+    /** Clusters of these triangles, to cull the hidden ones: for scenes of which several images are drawn; no
+     * picture changes. Must outlive the plan. */
+    RasterClusters* clusters = nullptr;
 };
 /** Bytes from one image's keys to the next's in a buffer of several. */
 std::uint64_t rasterStride(std::uint32_t width, std::uint32_t height);
@@ -91,7 +100,7 @@ public:
     /** Declares the passes. `view` is read at every execution: its camera may change between two, its size
      * and kind of projection may not. Throws InputError for a size that the device cannot hold. */
     RasterOutput declare(Graph& graph, const RasterTriangles& triangles,
-                         std::shared_ptr<const RasterView> view) const;
+                         std::shared_ptr<const RasterView> view, RasterClusters* clusters = nullptr) const;
     /** The same into a part of a buffer. */
     void declare(Graph& graph, const RasterTriangles& triangles, std::shared_ptr<const RasterView> view,
                  const RasterTarget& target) const;

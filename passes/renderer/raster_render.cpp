@@ -95,6 +95,7 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
              options.lightSamples, options.shading) {
     makeMips(device);
     makeShadows(device);
+    if (step.frame == 0) makeClusters(device, scene.deviceScene);
     if (kind_ == Kind::Temporal) {
         history_ = step.history;
         makeTemporalPlan(device, step);
@@ -131,9 +132,25 @@ void RasterSession::makeShadows(Device& device) {
     openTexels_ = drawShadowMaps(device, shade_);
 }
 
+/** Culling what is hidden, where several images are drawn of a large scene most of which is. */
+void RasterSession::makeClusters(Device& device, DeviceScene& scene) {
+    constexpr std::uint32_t least = 1u << 16;
+    const bool several = kind_ == Kind::Temporal || (kind_ == Kind::Supersampling && !shade_.seesThrough());
+    if (!several || scene.info().triangleCount < least) return;
+    const auto triangles = [&](Graph& graph) { return shade_.triangles(graph); };
+    clusters_ = std::make_unique<RasterClusters>(device, triangles);
+    Graph graph(device);
+    const RasterOutput output = raster_.declare(graph, triangles(graph), view_, clusters_.get());
+    const Readback<RasterCounters> counters = graph.readback<RasterCounters>(output.counters);
+    Plan plan = graph.compile({.executionsInFlight = 1});
+    plan.wait(plan.execute());  // says what shows
+    const RasterCounters work = counters.wait(plan.execute()).at(0);
+    if (2 * work.hidden < work.triangles) clusters_.reset();
+}
+
 void RasterSession::makeCentrePlan(Device& device) {
     Graph graph(device);
-    const RasterOutput visible = raster_.declare(graph, shade_.triangles(graph), view_);
+    const RasterOutput visible = raster_.declare(graph, shade_.triangles(graph), view_, clusters_.get());
     const ShadeOutput shaded = shade_.declare(graph, visible, view_);
     color_ =
         graph.readback<float>(kind_ == Kind::Fxaa ? declareFxaa(graph, shaded.color, size_) : shaded.color);
@@ -152,7 +169,8 @@ void RasterSession::makeSupersamplePlan(Device& device) {
     sampleViews_.push_back(std::make_shared<RasterView>(*view_));
     sum_.emplace(device, "raster.sum", std::uint64_t(pixels) * 16);
     Graph graph(device);
-    const RasterOutput visible = raster_.declare(graph, shade_.triangles(graph), sampleViews_[0]);
+    const RasterOutput visible =
+        raster_.declare(graph, shade_.triangles(graph), sampleViews_[0], clusters_.get());
     const ShadeOutput shaded = shade_.declare(graph, visible, sampleViews_[0]);
     declareAdd(graph, shaded.color, graph.import(*sum_), pixels, weight_);
     counters_ = graph.readback<RasterCounters>(visible.counters);
@@ -211,7 +229,7 @@ void RasterSession::makeTemporalPlan(Device& device, const TemporalStep& step) {
     Graph graph(device);
     const RasterTriangles triangles = shade_.triangles(graph);
     // Where surfaces let light through, the nearest one says what moves.
-    const RasterOutput visible = raster_.declare(graph, triangles, sampleViews_[0]);
+    const RasterOutput visible = raster_.declare(graph, triangles, sampleViews_[0], clusters_.get());
     const Buffer color =
         layers_ ? graph.import(layers_->color()) : shade_.declare(graph, visible, sampleViews_[0]).color;
     const Buffer picture =
@@ -415,6 +433,12 @@ void RasterSession::noteCounters(RenderResult& result) const {
                        {"tile_entries", work_.entries},
                        {"tile_triangles_visited", work_.tileVisited},
                        {"pixels_shaded", shaded_}};
+    if (clusters_) {
+        result.counters.emplace_back("triangles_hidden", work_.hidden);
+        result.counters.emplace_back("clusters", work_.clusters);
+        result.counters.emplace_back("clusters_outside", work_.clustersOutside);
+        result.counters.emplace_back("clusters_hidden", work_.clustersHidden);
+    }
     if (layers_ || masks_) result.counters.emplace_back("alpha_layers", drawn_.layers);
     if (corners_ > 0) result.counters.emplace_back("corners_shaded", corners_);
 }

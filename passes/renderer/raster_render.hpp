@@ -47,6 +47,7 @@ private:
     using Kind = Antialiasing::Kind;
     void makeMips(Device& device);
     void makeShadows(Device& device);
+    void makeClusters(Device& device, DeviceScene& scene);
     void makeCentrePlan(Device& device);
     void makeSupersamplePlan(Device& device);
     void declareSamples(Graph& graph, Buffer visibility, std::uint64_t stride);
@@ -86,6 +87,7 @@ private:
     std::uint32_t lightSamples_;
     Shading shading_;
     ShadePipeline shade_;
+    std::unique_ptr<RasterClusters> clusters_;  ///< of large scenes, to cull what is hidden
     /** The pixels' centres: first hits, and without samples the picture. */
     Plan plan_;
     Readback<float> color_, albedoDepth_, normal_;

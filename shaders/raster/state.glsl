@@ -48,6 +48,10 @@ const int COUNT_SMALL_COVERED = 8;  // of these, covered
 const int COUNT_PARTS = 9;          // triangles that clipping made
 const int COUNT_ENTRIES = 10;       // entries of the cells' lists
 const int COUNT_TILE_VISITED = 11;  // triangles times tiles tested by the tile kernel
-const int COUNTERS = 12;
+const int COUNT_HIDDEN = 12;        // triangles of clusters that what is drawn hides
+const int COUNT_CLUSTERS = 13;      // looked at, where clusters are culled
+const int COUNT_CLUSTERS_OUTSIDE = 14;
+const int COUNT_CLUSTERS_HIDDEN = 15;
+const int COUNTERS = 16;
 
 #endif

@@ -326,5 +326,60 @@ TEST(Antialiasing, NamesThatAreRefused) {
     EXPECT_THROW(renderer().render(pixelScene(overlapping()), options), InputError);
 }
 
+TEST(Supersampling, SamplesOfALargeSceneLeaveOutWhatAWallHides) {
+    // Glowing cards behind a wall that hides all of them, and the wall alone.
+    Scene scene;
+    Material glow;
+    glow.emission = {0, 1, 0};
+    glow.baseColor = {0.5f, 0.4f, 0.2f, 1};
+    Material wall = glow;
+    wall.emission = {1, 0.5f, 0.25f};
+    scene.materials = {glow, wall};
+    Primitive cards, front;
+    cards.material = 0;
+    constexpr std::uint32_t count = 70000;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float x = -0.8f + 1.6f * float(i % 280) / 280, y = -0.8f + 1.6f * float(i / 280) / 250;
+        cards.positions.insert(cards.positions.end(), {{x, y, 0}, {x + 0.01f, y, 0}, {x, y + 0.01f, -0.1f}});
+        cards.indices.insert(cards.indices.end(), {3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    front.material = 1;
+    front.positions = {{-2, -2, 2}, {2, -2, 1}, {2, 2, 2}, {-2, 2, 1}, {0.2f, 0.3f, 3}};
+    front.indices = {0, 1, 2, 0, 2, 3, 0, 1, 4};
+    scene.meshes = {{"front", {front}}, {"cards", {cards}}};
+    Camera camera;
+    camera.perspective = false;
+    camera.ymag = 1;
+    scene.cameras = {camera};
+    Node eye, first, second;
+    eye.camera = 0;
+    eye.translation = {0, 0, 10};
+    first.mesh = 0;
+    second.mesh = 1;
+    scene.nodes = {eye, first, second};
+    scene.roots = {0, 1, 2};
+    RenderOptions options;
+    options.pipeline = Pipeline::Raster;
+    options.size = {64, 64};
+    options.environment = Environment{.radiance = {0.25f, 0.5f, 1}};
+    for (const char* name : {"ssaa4", "taa"}) {
+        options.antialiasing = antialiasing(name);
+        options.antialiasing.temporal.frames = 4;
+        scene.roots = {0, 1, 2};
+        const RenderResult all = renderer().render(scene, options);
+        std::uint64_t hidden = 0, triangles = 0;
+        for (const auto& [key, value] : all.counters) {
+            if (key == "triangles_hidden") hidden = std::uint64_t(value);
+            if (key == "triangles") triangles = std::uint64_t(value);
+        }
+        EXPECT_GE(triangles, 4u * (count + 3)) << name;
+        EXPECT_GT(hidden, 4u * (count - 100)) << name;  // but for a cluster that lies on both
+        scene.roots = {0, 1};
+        const RenderResult alone = renderer().render(scene, options);
+        EXPECT_EQ(all.image.data, alone.image.data) << name;
+        for (const auto& [key, value] : alone.counters) EXPECT_NE(key, "triangles_hidden");
+    }
+}
+
 }  // namespace
 }  // namespace helio

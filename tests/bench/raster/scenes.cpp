@@ -75,6 +75,24 @@ BenchScene fullScreen(std::string name, std::uint32_t count, std::array<std::uin
     return scene;
 }
 
+BenchScene walls(std::string name, std::uint32_t count, std::uint32_t side,
+                 std::array<std::uint32_t, 2> size) {
+    BenchScene scene{std::move(name), pixelView(size), {}};
+    Uniform uniform;
+    for (std::uint32_t wall = 0; wall < count; ++wall) {
+        const double distance = uniform(1, 9);  // in no order
+        const auto corner = [&](std::uint32_t x, std::uint32_t y) {
+            return glm::dvec3(double(size[0]) * x / side, double(size[1]) * y / side, distance);
+        };
+        for (std::uint32_t y = 0; y < side; ++y)
+            for (std::uint32_t x = 0; x < side; ++x) {
+                add(scene, {corner(x, y), corner(x, y + 1), corner(x + 1, y + 1)});
+                add(scene, {corner(x, y), corner(x + 1, y + 1), corner(x + 1, y)});
+            }
+    }
+    return scene;
+}
+
 BenchScene fromFile(const std::string& file, std::array<std::uint32_t, 2> size) {
     const Scene loaded = load(file);
     const View view = chooseView(loaded, "", double(size[0]) / size[1]);

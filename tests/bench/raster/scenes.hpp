@@ -22,6 +22,9 @@ struct BenchScene {
 BenchScene scattered(std::string name, std::uint32_t count, double side, std::array<std::uint32_t, 2> size);
 /** `count` triangles that each cover the whole image. */
 BenchScene fullScreen(std::string name, std::uint32_t count, std::array<std::uint32_t, 2> size);
+/** `count` walls of `side` x `side` squares, two triangles each, that fill the image one behind another. */
+BenchScene walls(std::string name, std::uint32_t count, std::uint32_t side,
+                 std::array<std::uint32_t, 2> size);
 /** A file or sample, seen by its first camera or framed. */
 BenchScene fromFile(const std::string& file, std::array<std::uint32_t, 2> size);
 
