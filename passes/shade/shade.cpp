@@ -206,6 +206,7 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
     common.spec["SCENE_ORDER"] = inSceneOrder();
     common.spec["ORTHOGRAPHIC"] = view->orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
+    common.spec["ONE_LIGHT"] = scene_.info().lightCount - (lightSamples_ > 0 ? surfaceLights_ : 0) == 1;
     common.firstSpec = common.spec;
     if (lightSamples_ > 0) {
         common.firstSpec["LIGHT_SAMPLES"] = std::int32_t(lightSamples_);

@@ -18,6 +18,7 @@ layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constan
 #endif
 
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
+layout(constant_id = 145) const bool ONE_LIGHT = false;     ///< the light push.first alone: no loop, which costs some drivers more than its turn
 layout(constant_id = 128) const int LIGHT_SAMPLES = 0;       ///< emissive surfaces that a pixel draws; 0: push's range has them all
 layout(constant_id = 129) const int AREA_LIGHTS = 0;    ///< their number, where they are drawn
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
@@ -246,23 +247,42 @@ vec3 drawnIrradiance(ivec2 pixel, vec3 position, vec3 normal) {
 struct LightSums {
     vec3 diffuse, gloss;
 };
+void addBlinnPhong(int light, vec3 position, vec3 normal, vec3 toEye, float exponent, vec3 faceNormal, int g,
+                   inout LightSums sums) {
+    vec3 direction;
+    vec3 arriving = lightIrradiance(light, position, normal, direction);
+    if (SHADOWS != SHADOWS_NONE) arriving *= lightVisibility(light, position, faceNormal, g);
+    bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
+    BlinnPhongLight factor = BlinnPhongLight(1.0, 0.0);
+    if (punctual) factor = blinnPhongLight(normal, direction, toEye, exponent);
+    sums.diffuse += arriving * factor.diffuse;
+    sums.gloss += arriving * factor.gloss;
+}
 LightSums blinnPhongSums(ivec2 pixel, vec3 position, vec3 normal, vec3 toEye, float exponent, vec3 faceNormal, int g) {
     LightSums sums = LightSums(vec3(0.0), vec3(0.0));
     if (LIGHT_SAMPLES > 0) sums.diffuse = drawnIrradiance(pixel, position, normal);
-    if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
-        for (uint light = push.first; light < push.first + push.count; ++light) {
-            vec3 direction;
-            vec3 arriving = lightIrradiance(int(light), position, normal, direction);
-            if (SHADOWS != SHADOWS_NONE) arriving *= lightVisibility(int(light), position, faceNormal, g);
-            bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
-            BlinnPhongLight factor = BlinnPhongLight(1.0, 0.0);
-            if (punctual) factor = blinnPhongLight(normal, direction, toEye, exponent);
-            sums.diffuse += arriving * factor.diffuse;
-            sums.gloss += arriving * factor.gloss;
-        }
+    if (ONE_LIGHT)
+        addBlinnPhong(int(push.first), position, normal, toEye, exponent, faceNormal, g, sums);
+    else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+        for (uint light = push.first; light < push.first + push.count; ++light)
+            addBlinnPhong(int(light), position, normal, toEye, exponent, faceNormal, g, sums);
     return sums;
 }
 #endif
+
+/// Adds a light's irradiance, or where it goes by its direction what the surface reflects of it.
+void addLight(int light, Shaded shaded, inout vec3 irradiance, inout vec3 gloss) {
+    vec3 direction;
+    vec3 arriving = lightIrradiance(light, shaded.position, shaded.normal, direction);
+    if (SHADOWS != SHADOWS_NONE) arriving *= lightVisibility(light, shaded.position, shaded.faceNormal, shaded.g);
+    bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
+#ifdef SURFACE_MATERIALS
+    if (HAS_PUNCTUAL_LIGHTS && punctual) gloss += arriving * valueTowards(shaded.bsdf, shaded.point, direction);
+    irradiance += punctual ? vec3(0.0) : arriving;
+#else
+    irradiance += arriving * (punctual ? max(dot(shaded.normal, direction), 0.0) : 1.0);
+#endif
+}
 
 /// Radiance that a surface reflects of the lights push.first to push.first + push.count - 1.
 vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
@@ -282,20 +302,11 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 #else
     vec3 irradiance = vec3(0.0), gloss = vec3(0.0);
     if (LIGHT_SAMPLES > 0) irradiance = drawnIrradiance(pixel, shaded.position, shaded.normal);
-    if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
-        for (uint light = push.first; light < push.first + push.count; ++light) {
-            vec3 direction;
-            vec3 arriving = lightIrradiance(int(light), shaded.position, shaded.normal, direction);
-            if (SHADOWS != SHADOWS_NONE)
-                arriving *= lightVisibility(int(light), shaded.position, shaded.faceNormal, shaded.g);
-            bool punctual = HAS_PUNCTUAL_LIGHTS && direction != vec3(0.0);
-#ifdef SURFACE_MATERIALS
-            if (HAS_PUNCTUAL_LIGHTS && punctual) gloss += arriving * valueTowards(shaded.bsdf, shaded.point, direction);
-            irradiance += punctual ? vec3(0.0) : arriving;
-#else
-            irradiance += arriving * (punctual ? max(dot(shaded.normal, direction), 0.0) : 1.0);
-#endif
-        }
+    if (ONE_LIGHT)
+        addLight(int(push.first), shaded, irradiance, gloss);
+    else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+        for (uint light = push.first; light < push.first + push.count; ++light)
+            addLight(int(light), shaded, irradiance, gloss);
     return shaded.diffuse * (INV_PI * irradiance) + gloss;
 #endif
 }

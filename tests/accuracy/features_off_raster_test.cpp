@@ -99,6 +99,26 @@ TEST(RasterFeaturesOff, NoCodeAndNoBindingsForWhatIsNotAskedFor) {
     }
 }
 
+/** OpLoopMerge in a module. */
+std::size_t loops(const std::vector<std::uint32_t>& spirv) {
+    std::size_t count = 0;
+    for (std::size_t at = 5; at < spirv.size(); at += std::max(spirv[at] >> 16, 1u))
+        count += (spirv[at] & 0xffffu) == 246;
+    return count;
+}
+
+TEST(RasterFeaturesOff, NoLoopForOneLight) {
+    SceneBuilder room = plainRoom();
+    EXPECT_EQ(loops(shading(room.scene).spirv), 0u);
+    room.pointLight({0, 0.5f, 0}, glm::vec3(1.0f));
+    const SpecializedKernel one = shading(room.scene);
+    room.pointLight({0.5f, 0.5f, 0}, glm::vec3(1.0f));
+    const SpecializedKernel two = shading(room.scene);
+    fmt::print("loops: {} with one light, {} with two\n", loops(one.spirv), loops(two.spirv));
+    EXPECT_EQ(loops(one.spirv), 0u);
+    EXPECT_EQ(loops(two.spirv), 1u);
+}
+
 TEST(RasterFeaturesOff, NoPassesAndNoWorkForWhatIsNotThere) {
     const auto draw = [](const Scene& scene, const char* aa, Shading rate) {
         RenderOptions options;

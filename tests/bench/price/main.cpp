@@ -2,23 +2,24 @@
  * The price of the general engine: the path tracer's kernel for sample:cornell against one stripped by hand
  * (stripped.comp), run in turn on the same film, state and scene.
  *   bench_price [PAIRS] [SAMPLES] [SIZE]
+ *   bench_price raster [PAIRS] [PICTURES] [SIZE]
  *   bench_price features
  * First: prints the median of the ratios of CPU time (general / stripped) over the pairs, with its 95 %
- * interval by order statistics. Exit 1 where the pictures differ. Second: what each feature of a scene costs,
- * see features.hpp.
+ * interval by order statistics. Exit 1 where the pictures differ. Second: the same of the raster pipeline's
+ * shading, see shading.hpp. Third: what each feature of a scene costs, see features.hpp.
  */
 #include "tests/bench/price/contender.hpp"
 #include "tests/bench/price/features.hpp"
+#include "tests/bench/price/ratios.hpp"
+#include "tests/bench/price/shading.hpp"
 
 #include <fmt/format.h>
 #include <heliograph_kernels/price.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <string_view>
-#include <vector>
 
 namespace {
 
@@ -37,26 +38,9 @@ int compare(std::uint32_t pairs, std::uint32_t samples, std::uint32_t size) {
     Contender stripped(device, packed, scene, placed, options);
     general.run(1);  // compiles
     stripped.run(1);
-    std::vector<double> ratios;
-    for (std::uint32_t pair = 0; pair < pairs; ++pair) {
-        double a = 0, b = 0;
-        if (pair % 2 == 0) {
-            a = general.run(samples);
-            b = stripped.run(samples);
-        } else {
-            b = stripped.run(samples);
-            a = general.run(samples);
-        }
-        ratios.push_back(a / b);
-    }
-    std::sort(ratios.begin(), ratios.end());
-    // The rank of the median is binomial: 1.96 standard deviations of it.
-    const double half = 0.98 * std::sqrt(double(pairs)), middle = 0.5 * double(pairs - 1);
-    const auto at = [&](double rank) {
-        return ratios[std::size_t(std::clamp(rank, 0.0, double(pairs - 1)))];
-    };
-    fmt::print("general / stripped: median {:.4f}, 95 % interval {:.4f} to {:.4f}, {} pairs of {} samples\n",
-               at(middle), at(std::floor(middle - half)), at(std::ceil(middle + half)), pairs, samples);
+    test::printRatios(
+        pairs, samples, "samples", [&] { return general.run(samples); },
+        [&] { return stripped.run(samples); });
     const bool same = general.picture() == stripped.picture();
     fmt::print("pictures {}\n", same ? "equal to the bit" : "differ");
     return same ? 0 : 1;
@@ -70,6 +54,8 @@ int main(int argc, char** argv) {
     };
     try {
         if (argc > 1 && std::string_view(argv[1]) == "features") return test::printFeaturePrices();
+        if (argc > 1 && std::string_view(argv[1]) == "raster")
+            return test::compareShading(argument(2, 101), argument(3, 8), argument(4, 512));
         return compare(argument(1, 101), argument(2, 16), argument(3, 256));
     } catch (const std::exception& error) {
         fmt::print(stderr, "bench_price: {}\n", error.what());
