@@ -31,15 +31,18 @@ layout(constant_id = 7) const bool HEMISPHERE = false;  ///< directions are unif
 layout(constant_id = 9) const float ROULETTE = 3.0;
 layout(constant_id = 17) const float SURVIVAL = 0.0;  ///< above 0: the chance itself, whatever the throughput
 
-/** With what chance a path of this throughput goes on. */
-float rouletteChance(float throughput) {
-    return SURVIVAL > 0.0 ? (throughput > 0.0 ? SURVIVAL : 0.0) : min(1.0, ROULETTE * throughput);
-}
-
 /** Scatterings after which mirrors and total reflection lose one path in a hundred, which the others stand for: near its
  * critical angle a sphere of glass holds light for 10^5 turns without a loss that roulette could go by. */
 const uint LOSSLESS_DEPTH = 64u;
 const float LOSSLESS_SURVIVAL = 0.99;
+
+/** With what chance a path of this throughput goes on after `depth` scatterings, the last of them one into a finite set
+ * of directions or not. */
+float rouletteChance(float throughput, uint depth, bool finiteSet) {
+    const float lossless = finiteSet && depth > LOSSLESS_DEPTH ? LOSSLESS_SURVIVAL : 1.0;
+    const float chance = SURVIVAL > 0.0 ? (throughput > 0.0 ? SURVIVAL : 0.0) : min(1.0, ROULETTE * throughput) * lossless;
+    return depth < 2u ? 1.0 : chance;
+}
 
 struct Path {
     vec3 origin;
@@ -150,8 +153,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     path.origin = leaving(s, next.direction);
     path.source = slot;
     path.depth += 1u;
-    float keep = path.depth < 2u ? 1.0 : rouletteChance(largestOf(path.throughput));
-    if (SURVIVAL == 0.0 && path.depth > LOSSLESS_DEPTH && next.density < 0.0) keep *= LOSSLESS_SURVIVAL;
+    const float keep = rouletteChance(largestOf(path.throughput), path.depth, next.density < 0.0);
     alive = alive && next.goes && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;

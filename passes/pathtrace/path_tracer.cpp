@@ -4,6 +4,7 @@
 #include "passes/pathtrace/camera_frame.hpp"
 #include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
+#include "passes/pathtrace/wavefront.hpp"
 #include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/scene/material_layout.hpp"
 
@@ -35,6 +36,9 @@ const std::vector<std::string_view> kSurfaceBuffers = {"uTriangles", "uNodes",  
 const std::vector<std::string_view> kSurfaceConstants = {"HAS_NORMALS",         "HAS_COLORS",
                                                          "HAS_BASE_TEXTURES",   "HAS_FLOAT_TEXTURES",
                                                          "HAS_LINEAR_TEXTURES", "TRIANGLE_COUNT"};
+
+/** Loop turns of a dispatch of the megakernel for which the wavefront makes one round. */
+constexpr std::uint32_t kTurnsOfRound = 1000;
 
 /** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
 std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size) {
@@ -71,6 +75,10 @@ struct PathTracer::Impl {
         assert((scene_.info().motionKeys == 0 || options_.shutter != ShutterTimes{}) && "no time to move in");
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;
         if (unrolled_ || !scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
+        if (options_.scheduler == Scheduler::Wavefront) {
+            assert(options_.kernel == nullptr);
+            wavefront_.emplace(device, options_.size);
+        }
         declareTrace(film);
     }
 
@@ -80,8 +88,8 @@ struct PathTracer::Impl {
         spec["ORTHOGRAPHIC"] = orthographic_;
         spec.merge(SpecConstants(camera_.constants));
         if (scene_.info().hasShapes())
-            spec.merge(
-                scene_.constants({"LISTED_SHAPES", "SHAPES_IN_TREE", "HAS_SPHERES", "HAS_FLAT_SHAPES", "HAS_TORI"}));
+            spec.merge(scene_.constants(
+                {"LISTED_SHAPES", "SHAPES_IN_TREE", "HAS_SPHERES", "HAS_FLAT_SHAPES", "HAS_TORI"}));
         if (!materialDefines_.empty())
             spec.merge(scene_.constants({"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES"}));
         return spec;
@@ -174,19 +182,26 @@ struct PathTracer::Impl {
         spec["NEXT_EVENT"] = options_.nextEventEstimation;
         const bool seesThrough = (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
         spec["COUNT_TURNS"] = !unrolled_ || seesThrough || scene_.info().listedShapes > 0;
-        traceKernel_ = {kernel(options_.kernel ? *options_.kernel : shaders::trace, defines), spec};
-        graph.compute("trace", traceKernel_.kernel, {.spec = spec})
-            .reads(scene_.bindings(graph, surfaceBuffers()))
-            .reads(scene_.bindings(graph, buffers))
-            .reads(cameraBinding(graph))
-            .reads(ends)
-            .reads(patches)
-            .modifies({{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}})
-            .modifies(bounces)
-            .record([this](Commands& commands) {
-                const auto groups = groupsFor(options_.size);
-                commands.push(parameters_).dispatch(groups[0], groups[1]);
-            });
+        std::vector<Binding> reads,
+            modifies = {{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}};
+        for (const std::vector<Binding>& some :
+             {scene_.bindings(graph, surfaceBuffers()), scene_.bindings(graph, buffers), cameraBinding(graph),
+              ends, patches})
+            reads.insert(reads.end(), some.begin(), some.end());
+        modifies.insert(modifies.end(), bounces.begin(), bounces.end());
+        if (wavefront_) {
+            const auto variant = [&](const Kernel& built) { return kernel(built, defines); };
+            wavefront_->declare(graph, {variant, spec, reads, modifies});
+        } else {
+            traceKernel_ = {kernel(options_.kernel ? *options_.kernel : shaders::trace, defines), spec};
+            graph.compute("trace", traceKernel_.kernel, {.spec = spec})
+                .reads(reads)
+                .modifies(modifies)
+                .record([this](Commands& commands) {
+                    const auto groups = groupsFor(options_.size);
+                    commands.push(parameters_).dispatch(groups[0], groups[1]);
+                });
+        }
         counted_ = graph.readback<DeviceCounters>(counters);
         plan_ = graph.compile();
     }
@@ -208,8 +223,21 @@ struct PathTracer::Impl {
         if (options_.meter && frame_.forward.w > 0.5f)
             parameters_.maxDepth = std::min(parameters_.maxDepth + 1, kUnlimitedDepth);
         begun_ = true;
-        const Execution execution = plan_.execute();
-        last_ = counted_.wait(execution).at(0);
+        if (wavefront_) {
+            const auto [execution, left] =
+                wavefront_->run(plan_, parameters_, std::max(1u, options_.turnBudget / kTurnsOfRound),
+                                [this](const Execution& done) { addTimings(done); });
+            last_ = counted_.wait(execution).at(0);
+            last_.open = left;
+        } else {
+            const Execution execution = plan_.execute();
+            last_ = counted_.wait(execution).at(0);
+            addTimings(execution);
+        }
+        return last_.open == 0;
+    }
+
+    void addTimings(const Execution& execution) {
         for (const PassTiming& timing : plan_.timings(execution)) {
             const auto known = std::ranges::find(timings_, timing.name, &PassTiming::name);
             if (known == timings_.end())
@@ -217,7 +245,6 @@ struct PathTracer::Impl {
             else
                 known->milliseconds += timing.milliseconds;
         }
-        return last_.open == 0;
     }
 
     FirstHits firstHits() {
@@ -268,6 +295,7 @@ struct PathTracer::Impl {
     DeviceBuffer counters_;
     std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
     std::optional<BounceLayers> bounces_;
+    std::optional<Wavefront> wavefront_;
     TraceParameters parameters_{};
     TraceKernel traceKernel_;
     Plan plan_;

@@ -40,9 +40,10 @@ struct PathTraceOptions {
     std::uint32_t maxDepth = kUnlimitedDepth;    ///< scatterings at most: 0 emission only, 1 direct light
     bool nextEventEstimation = true;             ///< sample surface lights; else rays must find them
     AcceleratorKind accelerator = AcceleratorKind::Auto;
-    bool whitted = false;               ///< paths go on from mirrors and smooth refraction only
-    bool hemisphere = false;            ///< directions are uniform over the hemisphere
-    double roulette = 3, survival = 0;  ///< see RenderOptions
+    Scheduler scheduler = Scheduler::Megakernel;  ///< changes the time alone; not Auto
+    bool whitted = false;                         ///< paths go on from mirrors and smooth refraction only
+    bool hemisphere = false;                      ///< directions are uniform over the hemisphere
+    double roulette = 3, survival = 0;            ///< see RenderOptions
     SamplerKind sampler = SamplerKind::Sobol;
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;

@@ -4,6 +4,7 @@
 #include "engine/film/variance.hpp"
 #include "passes/denoise/denoise.hpp"
 #include "passes/pathtrace/bounce_layers.hpp"
+#include "passes/pathtrace/wavefront.hpp"
 #include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/renderer/checkpointing.hpp"
 #include "passes/renderer/frame.hpp"
@@ -258,6 +259,11 @@ void checkPathSize(const RenderOptions& options) {
         throw InputError("", "size",
                          fmt::format("{}x{} pixels are too many for the path pipeline", size[0], size[1]),
                          fmt::format("give at most 4096x{}", kMaxFilmHeight));
+    if (options.scheduler == Scheduler::Wavefront &&
+        std::uint64_t(size[0]) * size[1] > Wavefront::kMostPixels)
+        throw InputError("", "scheduler",
+                         fmt::format("{}x{} pixels are too many for the wavefront", size[0], size[1]),
+                         fmt::format("give at most {} pixels, or the megakernel", Wavefront::kMostPixels));
     const int most = BounceLayers::most(size);
     if (options.bounces > most)
         throw InputError("", "bounces",
@@ -273,6 +279,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
                           : std::uint32_t(std::min<std::int64_t>(options.maxDepth, kUnlimitedDepth));
     result.nextEventEstimation = options.nextEventEstimation;
     result.accelerator = options.accelerator;
+    if (options.scheduler == Scheduler::Wavefront) result.scheduler = Scheduler::Wavefront;
     const bool once = options.integrator == Integrator::Direct ||
                       options.integrator == Integrator::Hemisphere ||
                       options.integrator == Integrator::AmbientOcclusion;

@@ -134,7 +134,7 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     for (const char* option :
          {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
           "--sampler", "--integrator", "--patches", "--roulette", "--survival", "--lights", "--no-nee",
-          "--accelerator", "--bounces", "--checkpoint", "--resume"}) {
+          "--accelerator", "--scheduler", "--bounces", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,

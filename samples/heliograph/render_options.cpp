@@ -196,6 +196,11 @@ void addPathOptions(CLI::App* command, RenderArguments& arguments) {
          {"kd-tree", AcceleratorKind::KdTree},
          {"bsp", AcceleratorKind::Bsp}},
         "auto (default); bvh, brute-force, grid, octree, kd-tree, bsp: same image, other times");
+    addChoice<Scheduler>(command, "--scheduler", options.scheduler,
+                         {{"auto", Scheduler::Auto},
+                          {"megakernel", Scheduler::Megakernel},
+                          {"wavefront", Scheduler::Wavefront}},
+                         "auto (default); megakernel, wavefront: same image, other times");
 }
 
 void addRasterOptions(CLI::App* command, RenderArguments& arguments) {

@@ -25,19 +25,32 @@ Scene furnace() {
     return b.scene;
 }
 
+/** A room of mirrors in which paths are reflected 190 times between two walls until they meet a glowing one:
+ * from the middle to where they lie 380 half distances of the walls further, for 1.9 along them. */
+constexpr int kReflections = 190;
+Scene hallOfMirrors() {
+    SceneBuilder b;
+    const int mirror = b.material(glm::vec3(1.0f)), glow = b.material(glm::vec3(0.0f), glm::vec3(1.0f));
+    b.scene.materials[std::size_t(mirror)].scattering = Scattering{.model = Scattering::Model::Mirror};
+    b.room({-1, -1, -1}, {1, 1, 1}, {mirror, mirror, mirror, mirror, glow, mirror});
+    b.camera({0, 0, 0.9f}, {1, 0, 0.9f - 1.9f / (2 * kReflections)}, 2e-6f);
+    return b.scene;
+}
+
 struct Measured {
     double mean = 0, error = 0;
     double variance = 0;  ///< of one path
     double bounces = 0;   ///< rays of a path after the camera's
 };
-Measured measure(const std::function<void(RenderOptions&)>& set, std::uint32_t samples = 4096) {
+Measured measure(const std::function<void(RenderOptions&)>& set, std::uint32_t samples = 4096,
+                 const Scene& scene = furnace()) {
     RenderOptions o;
     o.size = {16, 16};
     o.samples = samples;
     o.sampler = SamplerKind::Independent;
     o.nextEventEstimation = false;
     set(o);
-    const RenderResult result = renderer().render(furnace(), o);
+    const RenderResult result = renderer().render(scene, o);
     Measured m;
     const auto c = std::size_t(result.image.channel("variance.R"));
     for (std::uint32_t y = 0; y < 16; ++y)
@@ -94,6 +107,27 @@ TEST(Roulette, ConstantsChangeNoMean) {
     EXPECT_EQ(all.bounces, 8.0);
     EXPECT_THROW(measure([](RenderOptions& o) { o.survival = 1.5; }), InputError);
     EXPECT_THROW(measure([](RenderOptions& o) { o.roulette = 0; }), InputError);
+}
+
+/** Throughput does not fall between mirrors: past 64 scatterings one path in a hundred ends at each, and the
+ * others stand for it. A path reaches the lamp with the chance p = .99^126 and brings 1 / p; the scatterings
+ * of one are 64 and the sum of .99^k over k from 1 to 126. */
+TEST(Roulette, PathsBetweenMirrorsEndAndLoseNothing) {
+    const double reaches = std::pow(0.99, kReflections - 64);
+    const double bounces = 64 + 0.99 * (1 - reaches) / 0.01, variance = 1 / reaches - 1;
+    const Measured m = measure([](RenderOptions&) {}, 256, hallOfMirrors());
+    const double z = (m.mean - 1) / m.error;
+    fmt::print(
+        "mirrors: {:.4f} +- {:.4f}, z {:+.2f}; variance {:.3f}, theory {:.3f}; {:.2f} bounces, theory "
+        "{:.2f}\n",
+        m.mean, m.error, z, m.variance, variance, m.bounces, bounces);
+    EXPECT_LT(std::abs(z), 4.0);
+    EXPECT_NEAR(m.variance / variance, 1.0, 0.05);
+    EXPECT_NEAR(m.bounces, bounces, 1.0);  // standard error .2
+    // A chance that is given holds alone.
+    const Measured all = measure([](RenderOptions& o) { o.survival = 1; }, 4, hallOfMirrors());
+    EXPECT_EQ(all.bounces, double(kReflections));
+    EXPECT_NEAR(all.mean, 1.0, 1e-6);
 }
 
 }  // namespace

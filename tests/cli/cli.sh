@@ -56,7 +56,7 @@ expect 'help' 0 'render' "$program" --help
 expect 'version' 0 '^[0-9]+\.[0-9]+\.[0-9]+$' "$program" --version
 expect 'no command' 2 'see heliograph --help' "$program"
 expect 'unknown command' 2 "there is no command 'paint'; there are render" "$program" paint
-expect 'unknown options, the first is named' 2 'error: --scheduler is not known here' "$program" render sample:cornell --scheduler wavefront --denoise
+expect 'unknown options, the first is named' 2 'error: --threads is not known here' "$program" render sample:cornell --threads 2 --denoise
 expect 'unknown option before any command' 2 'error: --fast is not known here' "$program" --fast
 expect 'unknown option is refused' 2 'denoise' "$program" render sample:cornell --denoise
 expect 'unknown choice is refused' 2 'not one of' "$program" render sample:cornell --sampler dice

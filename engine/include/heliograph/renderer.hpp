@@ -35,6 +35,10 @@ enum class Integrator : std::uint8_t { Path, Direct, Whitted, AmbientOcclusion, 
 /** How one of many lights is chosen: by what each brings to the place (tables over space and normal, built
  * where there are more than a few lights), by power, or each with the same chance. */
 enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
+/** Who decides what the path tracer's kernels work on: one kernel whose invocations follow their pixel's
+ * paths to the end, or queues of paths that a kernel each takes through one scattering. Auto takes what was
+ * found faster: Megakernel (docs/benchmarks.md). The picture is the same bit for bit. */
+enum class Scheduler : std::uint8_t { Auto, Megakernel, Wavefront };
 
 /** State of a running render, for progress displays. */
 struct Progress {
@@ -150,6 +154,7 @@ struct RenderOptions {
     bool nextEventEstimation = true;
     LightChoice lights = LightChoice::Adaptive;
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
+    Scheduler scheduler = Scheduler::Auto;                ///< of the path pipeline; the same
     std::uint32_t seed = 0;
     std::string camera;     ///< name or index; empty for the first
     double frameTime = 0;   ///< seconds; the scene is shown as posed() makes it

@@ -1,0 +1,54 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+/** @file Takes waiting paths through what their rays met: the same steps as a turn of trace.comp. */
+#include "passes/pathtrace/wavefront.glsl"
+
+void main() {
+    const uint at = queuePlace();
+    const bool waits = at < uLengths.queue[parameters.budget].w;
+    const uint index = waits ? queuedPixel(parameters.budget, at) : 0u;
+    uint bounceRays = 0u, cutPaths = 0u;
+    bool asks = false;
+    if (waits) {
+        const uvec2 pixel = pixelOf(index);
+        const uvec2 hit = uHits.hits[index];
+        const int slot = int(hit.y);
+        Path path = loadPath(pixel);
+        const PixelSampler numbers = numbersOf(pixel, path.sampleIndex);
+#ifdef MOTION_KEYS
+        setMotionTime(pathTime(numbers, pixel));
+#endif
+        seeSurroundings(path, pixel, slot < 0);
+#ifdef BOUNCES
+        const uint depth = path.depth;
+        const vec3 before = path.radiance;
+        path.radiance = vec3(0.0);
+#endif
+        ShadowRay shadow;
+        bool cut;
+        bool alive = scatter(path, numbers, uintBitsToFloat(hit.x), slot, parameters.maxDepth, shadow, cut);
+#ifdef BOUNCES
+        addBounce(pixel, parameters.size, depth, path.radiance);
+        path.radiance += before;
+#endif
+#ifdef CAMERA_TABLE
+        alive = alive && largestOf(path.throughput) > 0.0;  // where the camera sees nothing
+#endif
+        asks = shadow.limit > 0.0;
+        bounceRays = alive ? 1u : 0u;
+        cutPaths = cut ? parameters.countCut : 0u;
+        storePath(pixel, path);
+        imageStore(uState, stateTexel(pixel) + ivec2(1, 1),
+                   vec4(imageLoad(uState, stateTexel(pixel) + ivec2(1, 1)).xyz, float(path.lightPlace)));
+        const uint waiting = (alive ? 0u : WAITING_END) | (shadow.limit == INFINITE_DISTANCE ? WAITING_INFINITE : 0u);
+        uShadows.shadows[index * 3u] = uvec4(floatBitsToUint(shadow.origin), uint(shadow.target.x));
+        uShadows.shadows[index * 3u + 1u] = uvec4(floatBitsToUint(shadow.direction), uint(shadow.target.y));
+        uShadows.shadows[index * 3u + 2u] = uvec4(floatBitsToUint(asks ? shadow.radiance : vec3(0.0)), waiting);
+    }
+    enqueue(SHADOW_QUEUE, index, asks);
+    COUNT(bounce, bounceRays)
+    COUNT(cut, cutPaths)
+}
