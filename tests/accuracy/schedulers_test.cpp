@@ -84,9 +84,23 @@ TEST(Schedulers, AgreeOnMaterialsAlphaSurroundingsAndMeters) {
     expectAgreement(everything(), smallPicture(6));
 }
 
+/** A ball that crosses a lit floor while the shutter is open. */
 TEST(Schedulers, AgreeOnWhatMoves) {
+    SceneBuilder b;
+    const int wall = b.material(glm::vec3(0.7f, 0.6f, 0.5f));
+    b.quad({-2, -1, -2}, {-2, -1, 2}, {2, -1, 2}, {2, -1, -2}, wall);
+    const int ball = b.sphere({0, -0.4f, 0}, 0.5f, 2, false, wall);
+    b.pointLight({1.5f, 1, 1}, glm::vec3(2));
+    b.camera({0, 0.2f, 3}, {0, -0.2f, 0}, 0.9f);
+    AnimationChannel crossing;
+    crossing.node = b.scene.instances()[std::size_t(ball)].node;
+    crossing.path = AnimationPath::Translation;
+    crossing.times = {0, 1};
+    crossing.values = {-1, 0, 0, 1, 0, 0};
+    b.scene.animations.emplace_back().channels.push_back(crossing);
     RenderOptions o = smallPicture(6);
-    expectAgreement(load("sample:wheel"), o);
+    o.shutter = {0.0, 1.0};
+    expectAgreement(b.scene, o);
 }
 
 /** However many rounds a call makes, and whatever was done at its end. */
