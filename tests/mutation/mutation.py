@@ -175,7 +175,8 @@ class EngineCopy:
             # Times of files that are the same stay, so that a copy of an earlier run is not built anew.
             if not copy.exists() or copy.read_bytes() != (ROOT / name).read_bytes():
                 shutil.copy(ROOT / name, copy)
-        subprocess.run(["cmake", "-S", self.source, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"],
+        subprocess.run(["cmake", "-S", self.source, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                        f"-DHELIOGRAPH_SHARED_DIR={ROOT.parent / 'shared'}"],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.make(targets)
 
@@ -291,11 +292,11 @@ def main():
     for fault in left:
         print(f"  {results[fault.name]['state']}{' (explained)' if fault.name in explained else ''}: {fault.name}")
     if arguments.report:
-        lines = ["| file | faults | caught |", "|---|---|---|"]
-        for file in dict.fromkeys(fault.file for fault in run):
-            of_file = [fault for fault in run if fault.file == file]
-            lines.append(f"| {file} | {len(of_file)} | {sum(f in caught for f in of_file)} |")
-        lines.append(f"| all | {len(run)} | {len(caught)} |")
+        lines = ["| file | faults | run | caught |", "|---|---|---|---|"]
+        for file in dict.fromkeys(fault.file for fault in faults):
+            counts = [sum(fault.file == file for fault in some) for some in (faults, run, caught)]
+            lines.append(f"| {file} | {' | '.join(map(str, counts))} |")
+        lines.append(f"| all | {len(faults)} | {len(run)} | {len(caught)} |")
         arguments.report.write_text("\n".join(lines) + "\n")
     for message in stale:
         print(f"  not run, mend the catalogue: {message}")

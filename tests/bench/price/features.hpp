@@ -9,4 +9,8 @@ namespace helio::test {
  * the plain room's kernel, to the word. Returns an exit code. */
 int printFeaturePrices();
 
+/** The same of the raster pipeline, with its settings: instructions of the kernel that shades, most memory in
+ * use on the device, number of passes, and CPU time of a frame of 256 x 256 over the plain room's. */
+int printRasterPrices();
+
 }  // namespace helio::test

@@ -3,7 +3,7 @@
  * (stripped.comp), run in turn on the same film, state and scene.
  *   bench_price [PAIRS] [SAMPLES] [SIZE]
  *   bench_price raster [PAIRS] [PICTURES] [SIZE]
- *   bench_price features
+ *   bench_price features [raster]
  * First: prints the median of the ratios of CPU time (general / stripped) over the pairs, with its 95 %
  * interval by order statistics. Exit 1 where the pictures differ. Second: the same of the raster pipeline's
  * shading, see shading.hpp. Third: what each feature of a scene costs, see features.hpp.
@@ -53,7 +53,10 @@ int main(int argc, char** argv) {
         return argc > i ? std::uint32_t(std::max(1, std::atoi(argv[i]))) : fallback;
     };
     try {
-        if (argc > 1 && std::string_view(argv[1]) == "features") return test::printFeaturePrices();
+        if (argc > 1 && std::string_view(argv[1]) == "features") {
+            const bool raster = argc > 2 && std::string_view(argv[2]) == "raster";
+            return raster ? test::printRasterPrices() : test::printFeaturePrices();
+        }
         if (argc > 1 && std::string_view(argv[1]) == "raster")
             return test::compareShading(argument(2, 101), argument(3, 8), argument(4, 512));
         return compare(argument(1, 101), argument(2, 16), argument(3, 256));

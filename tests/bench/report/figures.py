@@ -10,11 +10,15 @@ FOLDER = ROOT / "docs" / "figures"
 TABLES = {
     "bench": ("Error against time", "BUILD/samples/heliograph/heliograph bench --json bench.json && "
                                     "tests/bench/report/report.py bench.json --table"),
+    "peers": ("Beside its peers", "tests/bench/peers.py BUILD"),
     "price": ("What features cost", "cmake --build BUILD --target bench_price && "
                                     "BUILD/tests/bench/price/bench_price features"),
+    "price_raster": ("What features of the raster pipeline cost", "cmake --build BUILD --target bench_price && "
+                                                                  "BUILD/tests/bench/price/bench_price features raster"),
     "mutation": ("Planted faults", "tests/mutation/mutation.py BUILD --engine"),
     "sweeps": ("How far quantities can go", "cmake --build BUILD --target stability_sweeps && "
-                                            "BUILD/tests/stability/stability_sweeps"),
+                                            "BUILD/tests/stability/stability_sweeps BUILD/sweeps.json && "
+                                            "tests/stability/picture.py BUILD/sweeps.json docs/figures/sweeps.png"),
     "ulp": ("Worst errors of the shared functions", "cmake --build BUILD --target accuracy_math && "
                                                     "HELIOGRAPH_SEARCH_SECONDS=60 BUILD/tests/accuracy/accuracy_math "
                                                     "--gtest_filter='*Search*'"),
@@ -54,6 +58,12 @@ def load(name):
     """A recorded figure, or None."""
     file = FOLDER / f"{name}.json"
     return json.loads(file.read_text()) if file.exists() else None
+
+
+def picture(name):
+    """The file of a recorded figure's picture, or None."""
+    file = FOLDER / f"{name}.png"
+    return file if file.exists() else None
 
 
 def store(name, header, rows, date, conditions):

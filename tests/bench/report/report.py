@@ -229,6 +229,7 @@ def page(record, folder):
             continue
         parts += [f"<h2>{html.escape(figure['title'])}</h2>", f"<p><code>{html.escape(figure['command'])}</code></p>",
                   html_table(figure["header"], figure["rows"]),
+                  image(figures.picture(name).read_bytes(), figure["title"], 'class="plot"') if figures.picture(name) else "",
                   f"<p class='small'>Recorded {figure['date']}: {html.escape(figure['conditions'])}.</p>"]
     return ("<!doctype html><html lang='en'><head><meta charset='utf-8'><meta name='viewport' "
             "content='width=device-width, initial-scale=1'><title>Heliograph: error against time</title>"

@@ -1,4 +1,5 @@
 #include "engine/shader/kernel_cache.hpp"
+#include "engine/shader/spirv_trimmer.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/kernel.hpp>
@@ -51,6 +52,34 @@ TEST(Variant, OfAKernelCompiledAtRunTime) {
     const Kernel wide = compileVariant(kernel, {.defines = {{"N", "16"}}, .generated = ""});
     EXPECT_FALSE(std::ranges::equal(wide.spirv, kernel.spirv));
     EXPECT_EQ(wide.name, "runtime");
+}
+
+TEST(Variant, LosesWhatItsConstantsRuleOut) {
+    const auto kernel = [](const std::string& name, const std::string& constant) {
+        return compileKernel(name,
+                             header +
+                                 "layout(local_size_x = 1) in;\n"
+                                 "layout(std430, binding = 0) buffer Values { float values[]; };\n"
+                                 "float heavy(float x) {\n"
+                                 "    for (int i = 0; i < 9; ++i) x = sin(x) + cos(2.0 * x) * sqrt(x);\n"
+                                 "    return x;\n"
+                                 "}\n"
+                                 "void main() {\n"
+                                 "    const bool WITH = " +
+                                 constant +
+                                 ";\n"
+                                 "    float x = 1.0;\n"
+                                 "    if (WITH) x = heavy(values[1]);\n"
+                                 "    values[0] = x;\n"
+                                 "}\n");
+    };
+    const Kernel with = kernel("with", "true"), without = kernel("without", "false");
+    const auto trimmed = [](const Kernel& k) {
+        return trimmedSpirv(std::vector(k.spirv.begin(), k.spirv.end()));
+    };
+    // The function is there, called or not, until what nothing calls is taken out.
+    EXPECT_LT(trimmed(without).size(), without.spirv.size() * 3 / 4);
+    EXPECT_GT(trimmed(with).size(), trimmed(without).size() * 3 / 2);
 }
 
 TEST(Compile, ErrorsNameFileAndLine) {
