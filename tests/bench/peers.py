@@ -5,7 +5,7 @@ OpenImageIO, each where it is installed.
     tests/bench/peers.py BUILD [--quick] [--only PEER...] [--repeats N] [--json FILE] [--cycles FILE]
 
 BUILD is a Release build, in which the benchmarks that this needs are made. Prints a Markdown table (what else is to be
-said goes to standard error); the JSON has every repeat. The ratio is Heliograph's time to the same error over the peer's:
+said goes to standard error); the JSON has every repeat, and a peer that it holds is not run again. The ratio is Heliograph's time to the same error over the peer's:
 below 1 it is faster. For whole renders the error is relMSE, and time to equal error the product of CPU time and relMSE,
 since that of both falls as one over time; rays, triangles and levels are the same for both, so that it is the time
 itself. "Alone" is without start-up, "whole" with it: of whole renders the process, start-up, files and all, until it has
@@ -169,12 +169,18 @@ def main():
     parser.add_argument("--cycles", type=pathlib.Path, help="what compare.py wrote before, in place of running it")
     options = parser.parse_args()
     record = {"what": "heliograph peers", "quick": options.quick, "cores": os.cpu_count(), "peers": {}}
+    if options.json and options.json.exists():
+        found = json.loads(options.json.read_text())
+        if any(found.get(key) != record[key] for key in ("what", "quick", "cores")):
+            sys.exit(f"{options.json}: not a record of this run; name another file")
+        record = found
     rows = []
     with tempfile.TemporaryDirectory() as scratch:
         peers = Peers(options, pathlib.Path(scratch))
         for name in options.only or PEERS:
             try:
-                measured = getattr(peers, name)()
+                kept = record["peers"].get(name)
+                measured = kept if isinstance(kept, list) else getattr(peers, name)()
             except Missing as error:
                 say(f"left out: {PEERS[name]}: {error}")
                 record["peers"][name] = {"left_out": str(error)}

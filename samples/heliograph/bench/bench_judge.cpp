@@ -21,8 +21,9 @@ void forEachValue(const ImageF& image, const Use& use) {
     }
 }
 
-/** Renders that take less are mostly what a render takes whatever its samples. */
-constexpr double kLeastSeconds = 0.02;
+/** Shorter renders, and those of little more than one sample, are partly what a render takes whatever its
+ * samples. */
+constexpr double kLeastSeconds = 0.02, kLeastOfFirst = 8;
 
 double relative(double squaredError, double truth) {
     return squaredError / (truth * truth + 0.01);
@@ -84,7 +85,8 @@ SeriesFit fitSeries(std::span<const SeriesPoint> points) {
         samples.push_back(point.samples);
         errors.push_back(point.relmse);
         last = point.relmse * point.cpuSeconds;
-        if (point.cpuSeconds >= kLeastSeconds) steady.push_back(std::sqrt(last));
+        const double least = std::max(kLeastSeconds, kLeastOfFirst * points.front().cpuSeconds);
+        if (point.cpuSeconds >= least) steady.push_back(std::sqrt(last));
     }
     SeriesFit fit;
     if (samples.size() < 3) return fit;

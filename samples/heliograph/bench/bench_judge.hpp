@@ -42,11 +42,10 @@ struct SeriesPoint {
 };
 struct SeriesFit {
     double order = 0, orderError = 0;  ///< exponent of relMSE over samples, and its standard error
-    /** Largest deviation of sqrt(relMSE x CPU time) from its mean over the points of 0.02 s and more,
-     * relative: 0 for a method whose error falls as one over the root of the time, and where there is no such
-     * point. */
+    /** Largest deviation of sqrt(relMSE x CPU time) from its mean over the steady points, relative: 0 for a
+     * method whose error falls as one over the root of the time, and where there is no such point. */
     double unsteadiness = 0;
-    std::size_t steadyPoints = 0;  ///< those of 0.02 s and more
+    std::size_t steadyPoints = 0;  ///< of 0.02 s and 8 times the first point's time
     double efficiency = 0;         ///< 1 / (relMSE x CPU s) at the last point
 };
 /** Points whose error is not positive are left out; a fit of fewer than three is all zero. */

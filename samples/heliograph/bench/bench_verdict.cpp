@@ -27,10 +27,11 @@ Verdict ofOrder(const BenchCase& measured, const SeriesFit& fit) {
 /** Times of a machine that does other things too decide nothing. */
 Verdict ofTime(const BenchCase& measured, const SeriesFit& fit) {
     const std::string what = fmt::format("{}/{}: RMSE x sqrt(CPU time)", measured.scene, measured.method);
-    if (fit.steadyPoints < 2) return {what + ": fewer than two points of 0.02 s and more, which say nothing"};
+    if (fit.steadyPoints < 2)
+        return {what + ": fewer than two points of 0.02 s and 8 times the first, which say nothing"};
     return {fmt::format(
-        "{} is constant within {:.1f} % over {} points of 0.02 s and more, {:.0f} % asked: {}", what,
-        100 * fit.unsteadiness, fit.steadyPoints, 100 * kSteady, said(fit.unsteadiness <= kSteady))};
+        "{} is constant within {:.1f} % over {} points of 0.02 s and 8 times the first, {:.0f} % asked: {}",
+        what, 100 * fit.unsteadiness, fit.steadyPoints, 100 * kSteady, said(fit.unsteadiness <= kSteady))};
 }
 
 Verdict ofSizes(const BenchCase& measured, const std::vector<SeriesPoint>& series) {
