@@ -24,6 +24,7 @@ struct DecodedImage {
     std::uint32_t height = 0;
     std::uint32_t fileWidth = 0, fileHeight = 0;  ///< of the file: an image of one colour may be one texel
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> texels;
+    std::string remark;  ///< on a file that is odd; empty for none
 };
 
 /** A few bytes can hold an image of any size. What images take that is out of all proportion to their files
@@ -110,8 +111,12 @@ std::string pngFault(std::span<const std::byte> file);
 /** Whether a file's first bytes are those of a PNG, JPEG or WebP. */
 bool isTextureFormat(std::span<const std::byte> file);
 
-/** Decodes such a file held in memory. Returns the fault, empty for success. */
-std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image);
+/** Decodes such a file held in memory. Returns the fault, empty for success. A large one is checked first,
+ * unless that has been done. */
+std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image,
+                        bool isChecked = false);
+/** What is wrong with such a file, found in little memory: nothing is kept. */
+std::string checkImage(std::span<const std::byte> file);
 
 /** What is said of an image that the budget is not for. */
 inline std::string unfoldsTo(std::uint64_t width, std::uint64_t height, std::uint64_t encoded) {

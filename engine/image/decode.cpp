@@ -98,27 +98,36 @@ bool isTextureFormat(std::span<const std::byte> file) {
     return startsWith(file, pngMagic) || startsWith(file, jpegMagic) || isWebp(file);
 }
 
-std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image) {
+namespace {
+
+std::string decodeAs(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image) {
+    if (startsWith(file, pngMagic)) return imageBackend().decode(pixelChunks(file), "png", budget, image);
+    if (startsWith(file, jpegMagic)) return imageBackend().decode(file, "jpg", budget, image);
+    if (isWebp(file)) return imageBackend().decode(file, "webp", budget, image);
+    return "is neither PNG nor JPEG nor WebP";
+}
+
+}  // namespace
+
+std::string checkImage(std::span<const std::byte> file) {
+    if (std::string fault = pngFault(file); !fault.empty()) return fault;
+    ImageBudget trial = ImageBudget::trial();
+    const DecoderMemory memory = decoderMemory(file);  // or room in a file, and time
+    if (!trial.hold(memory.bytes, file.size())) return unfoldsTo(memory.width, memory.height, file.size());
+    DecodedImage none;
+    return decodeAs(file, trial, none);
+}
+
+std::string decodeImage(std::span<const std::byte> file, ImageBudget& budget, DecodedImage& image,
+                        bool isChecked) {
     budget.begin();
     if (std::string fault = pngFault(file); !fault.empty()) return fault;
     const DecoderMemory memory = decoderMemory(file);
     if (!budget.hold(memory.bytes, file.size())) return unfoldsTo(memory.width, memory.height, file.size());
-    const bool isTried =
-        memory.bytes == 0 &&
-        ImageBudget::wantsTrial(std::uint64_t(memory.width) * memory.height * 4, file.size());
-    const auto decodeRows = [&](std::span<const std::byte> rows, const char* format) {
-        if (isTried) {
-            ImageBudget trial = ImageBudget::trial();
-            DecodedImage none;
-            if (std::string fault = imageBackend().decode(rows, format, trial, none); !fault.empty())
-                return fault;
-        }
-        return imageBackend().decode(rows, format, budget, image);
-    };
-    if (startsWith(file, pngMagic)) return decodeRows(pixelChunks(file), "png");
-    if (startsWith(file, jpegMagic)) return decodeRows(file, "jpg");
-    if (isWebp(file)) return imageBackend().decode(file, "webp", budget, image);
-    return "is neither PNG nor JPEG nor WebP";
+    if (!isChecked && ImageBudget::wantsTrial(memory.inAll(), file.size())) {
+        if (std::string fault = checkImage(file); !fault.empty()) return fault;
+    }
+    return decodeAs(file, budget, image);
 }
 
 }  // namespace helio

@@ -17,6 +17,7 @@ public:
     }
     std::uint32_t big16(std::size_t i) const { return at(i) << 8 | at(i + 1); }
     std::uint32_t big32(std::size_t i) const { return big16(i) << 16 | big16(i + 2); }
+    std::uint32_t little16(std::size_t i) const { return at(i) | at(i + 1) << 8; }
     std::uint32_t little32(std::size_t i) const {
         return at(i) | at(i + 1) << 8 | at(i + 2) << 16 | at(i + 3) << 24;
     }
@@ -33,6 +34,7 @@ private:
 DecoderMemory pngMemory(const Bytes& file) {
     DecoderMemory memory{0, file.big32(16), file.big32(20)};
     const std::uint32_t depth = file.at(24), color = file.at(25), interlace = file.at(28);
+    if (depth == 16) memory.texel = 8;
     if (interlace == 0) return memory;
     constexpr std::uint64_t rgba = 4;  // as a palette or a transparent colour may become
     const std::uint64_t channels = color == 4 ? 2 : rgba, bytes = depth == 16 ? 2 : 1;
@@ -90,7 +92,8 @@ DecoderMemory jpegMemory(const Bytes& file) {
     return memory;
 }
 
-/** RFC 9649: chunks from byte 12 on; a lossless one has its size in 14 bits each after a signature byte. */
+/** RFC 9649: chunks from byte 12 on; a lossless one has its size in 14 bits each after a signature byte, a
+ * lossy one after three bytes of tag and three of start code (RFC 6386, 9.1). */
 DecoderMemory webpMemory(const Bytes& file) {
     for (std::size_t at = 12; at + 8 <= file.size();) {
         if (file.has("VP8L", at)) {
@@ -99,6 +102,8 @@ DecoderMemory webpMemory(const Bytes& file) {
             memory.bytes = std::uint64_t(memory.width) * memory.height * 4;
             return memory;
         }
+        if (file.has("VP8 ", at))
+            return {0, file.little16(at + 14) & 0x3fff, file.little16(at + 16) & 0x3fff};
         const std::size_t size = file.little32(at + 4);
         at += 8 + size + size % 2;
     }

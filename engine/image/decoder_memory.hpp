@@ -9,6 +9,10 @@ namespace helio {
 struct DecoderMemory {
     std::uint64_t bytes = 0;  ///< 0 where rows come one after the other
     std::uint32_t width = 0, height = 0;
+    std::uint32_t texel = 4;  ///< bytes of one, decoded
+
+    /** With the decoded texels. */
+    std::uint64_t inAll() const { return bytes + std::uint64_t(width) * height * texel; }
 };
 
 /** An interlaced PNG's pixels, the coefficients of a JPEG whose scans refine it or hold single components, a

@@ -1,5 +1,6 @@
 /** @file libheliograph_image.so: the one place that sees OpenImageIO. */
 #include "engine/image/backend.hpp"
+#include "engine/image/jpeg.hpp"
 #include "engine/image/png.hpp"
 #include "engine/image/texel_reader.hpp"
 #include "engine/image/webp.hpp"
@@ -127,6 +128,7 @@ public:
                        DecodedImage& image) const override try {
         if (format == "webp") return decodeWebp(file, maximumTexels, budget, image);
         if (format == "png") return decodePng(file, maximumTexels, budget, image);
+        if (format == "jpg") return decodeJpeg(file, maximumTexels, budget, image);
         OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());
         const ImageSpec hints = readHints();
         const std::unique_ptr<ImageInput> input = ImageInput::create(format);

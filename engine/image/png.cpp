@@ -22,15 +22,15 @@ public:
     PngFile(const PngFile&) = delete;
     PngFile& operator=(const PngFile&) = delete;
 
-    /** Up to the pixels. False with a fault. */
-    bool open() {
+    /** Up to the pixels; of an interlaced one `byPasses`, or to be put together. False with a fault. */
+    bool open(bool byPasses) {
         if (info_ == nullptr) return false;
         if (setjmp(png_jmpbuf(png_)) != 0) return false;
         png_set_read_fn(png_, this, read);
         png_read_info(png_, info_);
         png_set_expand(png_);  // palettes, transparent colours, fewer than 8 bits
         if (std::endian::native == std::endian::little) png_set_swap(png_);
-        passes_ = png_set_interlace_handling(png_);
+        if (!byPasses) passes_ = png_set_interlace_handling(png_);
         png_read_update_info(png_, info_);
         return true;
     }
@@ -50,6 +50,19 @@ public:
         }
         return true;
     }
+
+    /** All rows of an interlaced image's passes, one after the other into room for the widest. False with a
+     * fault. */
+    bool checkPasses(std::byte* row) {
+        if (setjmp(png_jmpbuf(png_)) != 0) return false;
+        for (int pass = 0; pass < PNG_INTERLACE_ADAM7_PASSES; ++pass) {
+            const std::uint32_t rows = PNG_PASS_COLS(width(), pass) > 0 ? PNG_PASS_ROWS(height(), pass) : 0;
+            for (std::uint32_t y = 0; y < rows; ++y)
+                png_read_row(png_, reinterpret_cast<png_bytep>(row), nullptr);
+        }
+        return true;
+    }
+    bool hasPasses() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
 
     std::string fault() const { return std::string("cannot be decoded: ") + fault_.data(); }
 
@@ -100,9 +113,13 @@ std::string readTexels(PngFile& png, std::uint64_t encoded, ImageBudget& budget,
 std::string decodePng(std::span<const std::byte> file, std::uint64_t maximumTexels, ImageBudget& budget,
                       DecodedImage& image) {
     PngFile png(file);
-    if (!png.open()) return png.fault();
+    if (!png.open(budget.isTrial())) return png.fault();
     if (std::uint64_t(png.width()) * png.height() > maximumTexels)
         return "is too large: " + std::to_string(png.width()) + " x " + std::to_string(png.height());
+    if (budget.isTrial() && png.hasPasses()) {
+        std::vector<std::byte> row(png.rowBytes());
+        return png.checkPasses(row.data()) ? std::string() : png.fault();
+    }
     return png.has16Bits() ? readTexels<std::uint16_t>(png, file.size(), budget, image)
                            : readTexels<std::uint8_t>(png, file.size(), budget, image);
 }

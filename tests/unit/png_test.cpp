@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -113,6 +114,15 @@ void check(const Kind& kind) {
     ASSERT_EQ(decodeImage(file, budget, image), "");
     ASSERT_EQ(image.width, 13u);
     ASSERT_EQ(image.height, 9u);
+    EXPECT_EQ(checkImage(file), "");
+    std::vector<std::byte> higher =
+        file;  // than its rows: the header's length, name, width and height come first
+    higher[23] = std::byte{10};
+    const auto crc = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(&higher[12]), 17));
+    for (std::size_t k = 0; k < 4; ++k) higher[29 + k] = std::byte(crc >> (24 - 8 * k) & 255);
+    EXPECT_NE(decodeImage(higher, budget, image), "");
+    EXPECT_NE(checkImage(higher), "");
+    ASSERT_EQ(decodeImage(file, budget, image), "");
     for (std::size_t i = 0; i < 13 * 9; ++i) {
         const auto truth = expected(&picture.samples[i * channels], kind, picture);
         for (std::size_t c = 0; c < 4; ++c) {

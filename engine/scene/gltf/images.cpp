@@ -62,12 +62,13 @@ void ImageLoader::decodeAll(LoadMonitor& monitor, helio::Scene& scene) {
             warn(scene, fmt::format("images[{}] has a uri and a bufferView; the uri counts", i));
     }
     ImageBudget budget(memory_.left());
-    std::vector<DecodingResult> results = decodeImages(sources_, budget, monitor);
+    std::vector<DecodingResult> results = decodeImages(sources_, budget, monitor, AtFault::Stop);
     memory_.take("images", memory_.left() - std::size_t(budget.left()), 0);
     for (DecodingResult& image : results) {
         sizes_.emplace_back(image.fileWidth, image.fileHeight);
         if (!image.fault.empty())
             throw InputError(asset_.file(), image.place, image.fault, "give a whole PNG, JPEG or WebP image");
+        if (!image.remark.empty()) warn(scene, image.place + " " + image.remark);
         scene.images.push_back(std::move(image.image));
     }
 }

@@ -37,6 +37,8 @@ void TextureFiles::decode(LoadMonitor& monitor) {
             result.image.width = result.image.height = 1;
             result.image.texels = std::vector<std::uint8_t>(4, 255);
         }
+        if (!result.remark.empty())
+            warn(scene_, fmt::format("texture {} {}", shown(result.place), result.remark));
         scene_.images.push_back(std::move(result.image));
     }
 }
