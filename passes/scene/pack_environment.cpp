@@ -6,6 +6,7 @@
 #include <heliograph/image.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -87,11 +88,15 @@ void environment(const Scene& scene, const PackOptions& options, PackedScene& pa
                          fmt::format("give at most {} texels", kMostTexels));
     std::vector<glm::vec3> texels = linearTexels(image);
     const auto [nan, negative, infinite] = clean(texels);
-    if (nan + negative + infinite > 0)
+    std::vector<std::string> faults;
+    if (nan > 0) faults.push_back(fmt::format("{} not a number", nan));
+    if (negative > 0) faults.push_back(fmt::format("{} negative", negative));
+    if (infinite > 0) faults.push_back(fmt::format("{} infinite", infinite));
+    if (!faults.empty())
         packed.warnings.push_back(fmt::format(
-            "{}: {} values of the environment are not numbers, {} are negative and {} infinite: the "
-            "first two are taken as 0, the others as its largest finite value",
-            place, nan, negative, infinite));
+            "{}: the environment has values that are no radiance ({}); they are taken as 0, infinite ones as "
+            "its largest finite value",
+            place, fmt::join(faults, ", ")));
     if (w != 2 * h)
         packed.warnings.push_back(
             fmt::format("{}: a latitude-longitude environment is twice as wide as high, this one is {} x {}",
