@@ -142,7 +142,6 @@ void RasterPipeline::declare(Graph& graph, const RasterTriangles& triangles,
             .reads({{"uTriangles", triangles.buffer}})
             .reads(limit)
             .modifies({{"uVisibility", target.visibility, window},
-                       {"uVisibilityTexels", target.visibility, window, Format::RG32UI},
                        {"uState", state},
                        {"uCounters", target.counters}})
             .overwrites({{"uLarge", large}, {"uClipped", clipped}});
