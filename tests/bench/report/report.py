@@ -135,11 +135,16 @@ def plot_sizes(series_list, title):
     import matplotlib.pyplot as plt
     picture, (time_axes, error_axes) = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     for i, series in enumerate(series_list):
-        rows = points_of(series)
-        style = dict(marker="osD^"[i % 4], markersize=4, linewidth=1.4, color=plt.cm.tab10(i % 10),
-                     label=f"{series['scene']}, {series['method']}")
-        time_axes.plot([row["samples"] for row in rows], [row["cpu"] / row["items"] * 1e9 for row in rows], **style)
-        error_axes.plot([row["samples"] for row in rows], [max(row["relmse"], 1e-18) for row in rows], **style)
+        label = f"{series['scene']}, {series['method']}"
+        # Powers of two are a line, other sizes points beside it.
+        for odd in (False, True):
+            rows = [row for row in points_of(series) if (row["samples"] & (row["samples"] - 1) != 0) == odd]
+            if not rows:
+                continue
+            style = dict(marker="osD^"[i % 4], markersize=4, linewidth=0 if odd else 1.4, color=plt.cm.tab10(i % 10),
+                         markerfacecolor="none" if odd else None, label=None if odd else label)
+            time_axes.plot([row["samples"] for row in rows], [row["cpu"] / row["items"] * 1e9 for row in rows], **style)
+            error_axes.plot([row["samples"] for row in rows], [max(row["relmse"], 1e-18) for row in rows], **style)
     time_axes.set_ylabel("CPU time of each texel that is made, or ray, ns")
     error_axes.set_ylabel("relMSE against double precision (none: 1e-18)")
     error_axes.axhline(1e-9, color="#8c959f", linewidth=.8, linestyle=":")
