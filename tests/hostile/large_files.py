@@ -103,7 +103,7 @@ FILES = [
     ("polygons", "obj", lambda: obj(75000, 51), {}, False),
     ("polygon-of-15000000", "obj", lambda: obj(1, 3000000), {}, False),
     ("map-damaged-in-its-last-row", "obj", lambda: TEXTURED, {"scene__mtl": MATERIAL, "large__png": lambda: png(9000, WHOLE, b"\7")}, False),
-    ("interlaced-damaged-in-its-last-row", "gltf", lambda: pictures(1), {"picture0__bin": lambda: png(6000, PASSES, b"\7")}, False),
+    ("interlaced-damaged-in-its-last-row", "gltf", lambda: pictures(1), {"picture0__bin": lambda: png(8000, PASSES, b"\7")}, False),
     ("progressive-cut-off", "gltf", lambda: pictures(1), {"picture0__bin": lambda: progressive_jpeg(6000, b"")}, False),
     ("last-of-four-damaged", "gltf", lambda: pictures(4),
      {"picture%d__bin" % i: lambda i=i: png(6000, WHOLE, b"\7" if i == 3 else b"\0", i) for i in range(4)}, False),
