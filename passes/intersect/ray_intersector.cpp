@@ -10,6 +10,13 @@ namespace {
 constexpr std::uint32_t kGroupSize = 64;
 /** Rays of a workgroup: enough that lanes seldom wait for a run's last rays, few enough for even halves. */
 constexpr std::uint32_t kRaysPerGroup = 32 * kGroupSize;
+Kernel kernelFor(const PackedScene& packed) {
+    if (packed.accelerator != AcceleratorKind::Bvh)
+        return compileVariant(shaders::intersectEach, acceleratorVariant(packed.accelerator));
+    if (packed.placed.empty()) return shaders::intersect;
+    return compileVariant(shaders::intersect, {.defines = {{"INSTANCES", "1"}}, .generated = {}});
+}
+
 /** Loop turns a subgroup may start with, of the 65,535 that lavapipe runs; a ray may take 16,000. */
 constexpr std::uint32_t kBudget = 30000;
 
@@ -28,13 +35,15 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     assert(packed.nodeCount > 0 && capacity > 0 && capacity <= (1u << 23));
     Graph graph(device);
     const Buffer counters = graph.import(counters_);
-    graph
-        .compute("intersect",
-                 packed.accelerator == AcceleratorKind::Bvh
-                     ? shaders::intersect
-                     : compileVariant(shaders::intersectEach, acceleratorVariant(packed.accelerator)),
-                 {.spec = {{"ANY", question == RayQuestion::Any},
-                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}}})
+    SpecConstants spec = {{"ANY", question == RayQuestion::Any},
+                          {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}};
+    std::vector<Binding> placed;
+    if (!packed.placed.empty()) {
+        placed_ = makeBuffer(device, "intersect.placed", packed.placed);
+        placed.push_back({"uPlaced", graph.import(*placed_)});
+    }
+    graph.compute("intersect", kernelFor(packed), {.spec = spec})
+        .reads(placed)
         .reads({{"uTriangles", graph.import(triangles_)},
                 {"uNodes", graph.import(nodes_)},
                 {"uRays", graph.import(rays_)}})

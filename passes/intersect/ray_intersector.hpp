@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,7 @@ private:
         std::uint32_t open, abandoned;
     };
     DeviceBuffer triangles_, nodes_, rays_, hits_, cursors_, counters_;
+    std::optional<DeviceBuffer> placed_;
     std::size_t capacity_;
     Parameters parameters_{};
     Plan plan_;

@@ -85,6 +85,7 @@ struct PathTracer::Impl {
     SpecConstants constants() const {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
+        if (scene_.hasPlacedMeshes()) spec.merge(scene_.constants({"PLACED_BITS"}));
         spec["ORTHOGRAPHIC"] = orthographic_;
         spec.merge(SpecConstants(camera_.constants));
         if (scene_.info().hasShapes())
@@ -103,6 +104,7 @@ struct PathTracer::Impl {
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
         if (scene_.info().solidTextures) defines["SOLID_TEXTURES"] = "1";
         if (scene_.info().hasShapes()) defines["SHAPES"] = "1";
+        if (scene_.hasPlacedMeshes()) defines["INSTANCES"] = "1";
         if (table_) defines["CAMERA_TABLE"] = "1";
         if (scene_.info().motionKeys > 0) defines["MOTION_KEYS"] = std::to_string(scene_.info().motionKeys);
         if (generated_.empty() && defines.empty()) return built;
@@ -113,6 +115,7 @@ struct PathTracer::Impl {
         std::vector<std::string_view> names = kSurfaceBuffers;
         if (!materialDefines_.empty()) names.push_back("uTangents");
         if (scene_.info().solidTextures) names.push_back("uSolidPoints");
+        if (scene_.hasPlacedMeshes()) names.push_back("uPlaced");
         if (scene_.info().motionKeys > 0) {
             std::erase(names, "uNormals");
             names.insert(names.end(), {"uTriangleKeys", "uNormalKeys"});
@@ -316,12 +319,15 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
     const bool moves = options.shutter != ShutterTimes{};
-    return {.tree = !choose || moves || options.radiosity || scene.triangleCount() > kWrittenOutTriangles ||
-                    scene.shapeCount() > kListedShapes,
+    const bool tree = choose || options.accelerator == AcceleratorKind::Bvh;
+    const Placing placing = tree && !moves && !options.radiosity ? options.placing : Placing::Flatten;
+    return {.tree = !choose || moves || options.radiosity || placing == Placing::Always ||
+                    scene.triangleCount() > kWrittenOutTriangles || scene.shapeCount() > kListedShapes,
             .writeOutLargest = choose && !moves && !options.radiosity,
             .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
-            .lights = options.lights};
+            .lights = options.lights,
+            .placing = placing};
 }
 
 bool PathTracer::advance(std::uint32_t sampleEnd) {

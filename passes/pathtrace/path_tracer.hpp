@@ -48,6 +48,7 @@ struct PathTraceOptions {
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;
     LightChoice lights = LightChoice::Adaptive;
+    Placing placing = Placing::WhereItSaves;
     ShutterTimes shutter = {};  ///< where something moves
     /** Node to world at times evenly over what is rendered, where the camera moves; the first is the one that
      * the tracer is given. */

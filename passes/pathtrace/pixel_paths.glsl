@@ -126,13 +126,24 @@ Path loadPath(uvec2 pixel) {
     const vec4 s0 = imageLoad(uState, place), s1 = imageLoad(uState, place + ivec2(1, 0));
     const vec4 s2 = imageLoad(uState, place + ivec2(2, 0)), s3 = imageLoad(uState, place + ivec2(3, 0));
     const float lightPlace = imageLoad(uState, place + ivec2(1, 1)).w;
-    return Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), uint(s0.w), int(s3.w), int(lightPlace));
+    Path path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), uint(s0.w), int(s3.w), int(lightPlace));
+#ifdef INSTANCES
+    path.source += int(path.depth >> 17) << 24;
+    path.depth &= 0x1ffffu;
+#endif
+    return path;
 }
 
 void storePath(uvec2 pixel, Path path) {
     const ivec2 place = stateTexel(pixel);
     imageStore(uState, place, vec4(path.origin, float(path.sampleIndex)));
     imageStore(uState, place + ivec2(1, 0), vec4(path.direction, path.density));
+#ifdef INSTANCES
+    // Slots of placed meshes have 31 bits, 7 of them beside the depth.
+    const int high = max(path.source, 0) >> 24;
+    path.depth += uint(high) << 17;
+    path.source -= high << 24;
+#endif
     imageStore(uState, place + ivec2(2, 0), vec4(path.throughput, float(path.depth)));
     imageStore(uState, place + ivec2(3, 0), vec4(path.radiance, float(path.source)));
 }

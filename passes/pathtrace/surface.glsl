@@ -75,7 +75,11 @@ SurfacePoint surfaceAt(vec3 origin, vec3 direction, int source, int slot) {
     const vec3 normal = scaled / max(length(scaled), 0.5);
     s.front = dot(normal, direction) < 0.0;
     s.face = s.front ? normal : -normal;
+#ifdef INSTANCES
+    const vec3 shading = shadingNormal(s.triangle, s.b, normal);
+#else
     const vec3 shading = shadingNormal(s.triangle.g, s.b, normal);
+#endif
     s.shading = s.front ? shading : -shading;
     s.offset = offsetDistance(v0, v1, v2, normal);
 #ifdef SHAPES

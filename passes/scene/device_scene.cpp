@@ -6,10 +6,19 @@
 #include <cassert>
 
 namespace helio {
+namespace {
+
+/** Placed corners are brought to the world in double. */
+PackOptions supported(const Device& device, PackOptions options) {
+    if (!device.info().has("shaderFloat64")) options.placing = Placing::Flatten;
+    return options;
+}
+
+}  // namespace
 
 DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Scene> later,
                          const PackOptions& options)
-    : info_(packScene(scene, later, options)) {
+    : info_(packScene(scene, later, supported(device, options))) {
     hostBytes_ = info_.bytes();
     const auto& environment = info_.environment;
     hasLightTables_ = !info_.lightSlots.empty();
@@ -50,7 +59,9 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
                   {"HAS_SPHERES", info_.spheres},
                   {"HAS_TORI", info_.tori},
                   {"HAS_FLAT_SHAPES", info_.flatShapes},
+                  {"PLACED_BITS", std::int32_t(info_.placedBits)},
                   {"TRIANGLE_COUNT", std::int32_t(info_.triangleCount)}};
+    hasPlacedMeshes_ = !info_.placed.empty();
     const auto upload = [&](std::string_view name, auto& values, Format view) {
         using T = typename std::decay_t<decltype(values)>::value_type;
         if (values.empty()) values.assign(std::max<std::size_t>(1, 16 / sizeof(T)), T{});
@@ -61,6 +72,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
     };
     upload("uTriangles", info_.triangles, Format::Undefined);
     upload("uNodes", info_.nodes, Format::Undefined);
+    if (hasPlacedMeshes()) upload("uPlaced", info_.placed, Format::Undefined);
     upload("uNormals", info_.normals, Format::Undefined);
     upload("uTexcoords", info_.texcoords, Format::Undefined);
     upload("uTangents", info_.tangents, Format::Undefined);

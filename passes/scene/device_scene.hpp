@@ -41,6 +41,10 @@ public:
     bool hasLightTables() const { return hasLightTables_; }
     SpecConstants lightTableConstants() const;
 
+    /** Whether there are placed meshes: uPlaced is there, for kernels compiled with INSTANCES and
+     * PLACED_BITS. */
+    bool hasPlacedMeshes() const { return hasPlacedMeshes_; }
+
     /** What was packed, without the arrays (they are on the device) but for `textures`. */
     const PackedScene& info() const { return info_; }
     /** Bytes on the device. */
@@ -56,7 +60,7 @@ private:
     };
     PackedScene info_;
     std::uint64_t hostBytes_ = 0;
-    bool hasLightTables_ = false;
+    bool hasLightTables_ = false, hasPlacedMeshes_ = false;
     std::vector<Named> buffers_;
     SpecConstants constants_;
 };

@@ -1,5 +1,6 @@
 #include "passes/scene/material_layout.hpp"
 #include "passes/scene/packed_scene.hpp"
+#include "passes/scene/placed_meshes.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -64,6 +65,15 @@ glm::vec3 unitOr(const glm::dvec3& v, const glm::dvec3& fallback) {
     return other > 0.0 ? glm::vec3(fallback / other) : glm::vec3(0.0f, 0.0f, 1.0f);
 }
 
+/** An instance that is flattened, or a mesh that is placed, in its own space. */
+struct Part {
+    std::uint32_t index;  ///< the instance's
+    Instance instance;
+    glm::dmat4 transform;  ///< to the world about the origin
+    bool mirrored;
+    bool inOwnSpace;
+};
+
 /** Attributes that some surface has, and that all therefore get. */
 struct Attributes {
     bool normals = false, colors = false, texcoords = false, tangents = false;
@@ -105,11 +115,10 @@ void addShape(const Scene& scene, const Instance& instance, const Primitive& pri
 }  // namespace
 
 std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
-                                std::vector<Surface>& surfaces) {
+                                std::vector<Surface>& surfaces, PlacedMeshes* placed) {
     const std::vector<Instance> instances = scene.instances();
     std::uint64_t total = 0;
-    for (const Instance& instance : instances) {
-        packed.instanceFirst.push_back(std::uint32_t(total));
+    const auto count = [&](const Instance& instance) {
         for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
             if (primitive.material >= int(scene.materials.size()))
                 throw InputError(scene.name, fmt::format("mesh {}", instance.mesh),
@@ -121,9 +130,34 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
         if (total >= (1u << 24))
             throw InputError(scene.name, "", fmt::format("more than {} triangles", (1u << 24) - 1),
                              "reduce the meshes or the number of instances");
+    };
+    std::vector<Part> parts;
+    auto next = placed != nullptr ? placed->placements.begin() : std::vector<MeshPlacement>::iterator();
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        packed.instanceFirst.push_back(std::uint32_t(total));
+        if (placed != nullptr && next != placed->placements.end() && next->instance == i) {
+            ++next;
+            continue;
+        }
+        count(instances[i]);
+        glm::dmat4 transform = instances[i].transform;
+        transform[3] -= glm::dvec4(origin, 0.0);
+        parts.push_back({std::uint32_t(i), instances[i], transform,
+                         glm::determinant(glm::dmat3(transform)) < 0.0, false});
+    }
+    packed.triangleCount = std::uint32_t(total);
+    if (placed != nullptr) {
+        for (PlacedMesh& mesh : placed->meshes) {
+            mesh.firstG = std::uint32_t(total);
+            Instance own;
+            own.mesh = int(mesh.mesh);
+            count(own);
+            parts.push_back({0, own, glm::dmat4(1.0), mesh.mirrored, true});
+        }
+        for (const MeshPlacement& p : placed->placements)
+            packed.instanceFirst[p.instance] = placed->meshes[p.mesh].firstG;
     }
     packed.instanceFirst.push_back(std::uint32_t(total));
-    packed.triangleCount = std::uint32_t(total);
 
     const bool anyNormals =
         anyPrimitive(scene, instances, [](const Primitive& p) { return !p.normals.empty(); });
@@ -152,13 +186,14 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
             packed.solidPoints.emplace_back(kNoisePermutation[i], kNoisePermutation[(i + 1) % 256], 0, 0);
     }
 
-    for (std::size_t i = 0; i < instances.size(); ++i) {
-        const Instance& instance = instances[i];
-        glm::dmat4 transform = instance.transform;
-        transform[3] -= glm::dvec4(origin, 0.0);
+    for (const Part& part : parts) {
+        const Instance& instance = part.instance;
+        const glm::dmat4& transform = part.transform;
         const glm::dmat3 linear(transform);
         const glm::dmat3 forNormals = normalMatrix(linear);
-        const bool mirrored = glm::determinant(linear) < 0.0;
+        const bool mirrored = part.mirrored;
+        // Kernels turn placed normals by normalMatrix(), which a mirror does not turn over, unlike a face.
+        const double faceSign = part.inOwnSpace && mirrored ? -1.0 : 1.0;
         const float scale = float(std::cbrt(std::abs(glm::determinant(linear))));
         const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
@@ -167,8 +202,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
                                                                   : std::uint32_t(primitive.material);
             if (primitive.shape) {
                 addShape(scene, instance, primitive, origin, any, packed, positions);
-                surfaces.push_back(
-                    {std::uint32_t(i), material, false, 1 + std::uint32_t(primitive.shape->kind)});
+                surfaces.push_back({part.index, material, false, 1 + std::uint32_t(primitive.shape->kind)});
                 continue;
             }
             const Material& look = materialOf(scene, primitive);
@@ -198,9 +232,10 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
                     corner[k] = glm::dvec3(rounded);
                     positions.push_back(rounded);
                 }
-                surfaces.push_back({std::uint32_t(i), material});
+                surfaces.push_back({part.index, material});
                 if (anyNormals) {
-                    const glm::dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+                    const glm::dvec3 face =
+                        faceSign * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
                     for (std::uint32_t k : index)
                         packed.normals.push_back(
                             {primitive.normals.empty()

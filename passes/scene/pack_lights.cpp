@@ -299,7 +299,7 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     // With few lights the tables gain nothing that pays for reading them.
     const std::size_t few = options.lights == LightChoice::Adaptive ? kFewLights : 1;
     if (options.lights != LightChoice::Power && candidates.size() > few)
-        makeTables(candidates, onShapes.empty() ? positions : onShapes, positions.size() / 3,
+        makeTables(candidates, onShapes.empty() ? positions : onShapes, surfaces.size(),
                    options.lights == LightChoice::Adaptive, packed);
     for (std::size_t g = 0; g < packed.lightOfTriangle.size(); ++g)
         if (isMoving[surfaces[g].material]) packed.lightOfTriangle[g] = ~0u;

@@ -51,6 +51,7 @@ std::vector<glm::vec3> surfaceTriangles(std::span<const glm::vec3> positions,
         const auto on = trianglesOn(shapeOf(at, surfaces[g].shape), extent > 0 ? extent : 1.0);
         corners.insert(corners.end(), on.begin(), on.end());
     }
+    corners.insert(corners.end(), positions.begin() + std::ptrdiff_t(surfaces.size() * 3), positions.end());
     return corners;
 }
 

@@ -47,7 +47,7 @@ std::uint64_t hash(const glm::vec3* corners) {
 }  // namespace
 
 std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces, bool fromBothSides,
-                          std::vector<glm::vec3>& positions) {
+                          std::span<glm::vec3> positions) {
     constexpr std::uint64_t kIndexBits = (1u << 24) - 1;  // geometry() refuses more triangles
     std::vector<std::uint64_t> keys(surfaces.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), 4096), [&](const auto& range) {

@@ -3,6 +3,7 @@
 #include "engine/scene/bvh.hpp"
 #include "passes/scene/large_triangles.hpp"
 #include "passes/scene/material_layout.hpp"
+#include "passes/scene/placed_meshes.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -175,11 +177,11 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> corners,
 }  // namespace
 
 std::uint64_t PackedScene::bytes() const {
-    return bytesOf(triangles) + bytesOf(triangleKeys) + bytesOf(normalKeys) + bytesOf(instanceFirst) +
-           bytesOf(nodes) + bytesOf(normals) + bytesOf(texcoords) + bytesOf(tangents) + bytesOf(colors) +
-           bytesOf(solidPoints) + bytesOf(materials) + bytesOf(lights) + bytesOf(textures) +
-           bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) + bytesOf(lightSlots) +
-           bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
+    return bytesOf(triangles) + bytesOf(placed) + bytesOf(triangleKeys) + bytesOf(normalKeys) +
+           bytesOf(instanceFirst) + bytesOf(nodes) + bytesOf(normals) + bytesOf(texcoords) +
+           bytesOf(tangents) + bytesOf(colors) + bytesOf(solidPoints) + bytesOf(materials) + bytesOf(lights) +
+           bytesOf(textures) + bytesOf(texels8) + bytesOf(texelsFloat) + bytesOf(environmentMap) +
+           bytesOf(lightSlots) + bytesOf(lightCells) + bytesOf(lightRanges) + bytesOf(lightOfTriangle);
 }
 
 KernelVariant acceleratorVariant(AcceleratorKind kind) {
@@ -204,36 +206,74 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
             return m.occlusionTexture && m.occlusionStrength > 0.0f && !m.unlit;
         });
     std::vector<pack::Surface> surfaces;
-    std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces);
+    const bool places = later.empty() && options.tree && options.accelerator == AcceleratorKind::Bvh;
+    pack::PlacedMeshes placed = places ? pack::choosePlaced(scene, options) : pack::PlacedMeshes();
+    std::vector<glm::vec3> positions = pack::geometry(scene, options.origin, packed, surfaces, &placed);
+    const std::size_t flattened = packed.triangleCount;
+    const std::span<const pack::Surface> inWorld = std::span(surfaces).first(flattened);
     std::vector<std::vector<glm::vec3>> keys;
     if (!later.empty()) {
         // What lies in one place now may part when it moves.
         keys = pack::motion(positions, later, options, packed, surfaces);
-    } else if (const std::size_t twins = pack::collapseTwins(scene, surfaces, options.tree, positions)) {
-        packed.warnings.push_back(fmt::format(
-            "{} triangles lie exactly on opaque ones before them and are left out; delete the doubles",
-            twins));
+    } else {
+        const auto collapse = [&](std::size_t first, std::size_t count) {
+            return pack::collapseTwins(scene, std::span(surfaces).subspan(first, count), options.tree,
+                                       std::span(positions).subspan(first * 3, count * 3));
+        };
+        std::size_t twins = collapse(0, flattened);
+        for (const pack::PlacedMesh& mesh : placed.meshes) twins += collapse(mesh.firstG, mesh.triangles);
+        if (twins > 0)
+            packed.warnings.push_back(fmt::format(
+                "{} triangles lie exactly on opaque ones before them and are left out; delete the doubles",
+                twins));
     }
+    std::optional<pack::PlacedTrees> trees;
+    if (!placed.placements.empty()) trees.emplace(placed, positions);
 
     std::vector<bool> materialUsed(scene.materials.size() + 1, false);
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;
     pack::materials(scene, materialUsed, packed);
     pack::environment(scene, options, packed);
-    pack::lights(scene, positions, surfaces, options, packed);
+    if (trees) {
+        std::vector<glm::vec3> lit(positions.begin(), positions.begin() + std::ptrdiff_t(flattened * 3));
+        const std::vector<glm::vec3> samples = pack::placedSamples(placed, positions);
+        lit.insert(lit.end(), samples.begin(), samples.end());
+        pack::lights(scene, lit, inWorld, options, packed);
+        if (!packed.lightOfTriangle.empty()) packed.lightOfTriangle.resize(surfaces.size(), 0);
+    } else {
+        pack::lights(scene, positions, surfaces, options, packed);
+    }
 
     for (const pack::Surface& surface : surfaces) packed.shapeCount += surface.shape > 0 ? 1 : 0;
     std::vector<std::vector<glm::vec3>> boxes;
     if (packed.hasShapes())
         for (const auto& key : keys) boxes.push_back(pack::treeCorners(key, surfaces));
-    const std::vector<std::uint32_t> order =
-        accelerate(!keys.empty() ? pack::waysBoxes(boxes.empty() ? keys : boxes)
-                                 : (packed.hasShapes() ? pack::treeCorners(positions, surfaces) : positions),
-                   surfaces, options, packed);
+    std::vector<std::uint32_t> order;
+    if (trees) {
+        const auto world = std::span(positions).first(flattened * 3);
+        std::vector<glm::vec3> corners = pack::treeCorners(world, inWorld);
+        const std::vector<glm::vec3> standing = trees->boxes();
+        corners.insert(corners.end(), standing.begin(), standing.end());
+        packed.triangleCount += std::uint32_t(placed.placements.size());
+        PackOptions inTree = options;
+        inTree.writeOutLargest = false;  // nothing but trees knows which of equally near ones comes first
+        order = accelerate(corners, inWorld, inTree, packed);
+    } else {
+        order = accelerate(!keys.empty()
+                               ? pack::waysBoxes(boxes.empty() ? keys : boxes)
+                               : (packed.hasShapes() ? pack::treeCorners(positions, surfaces) : positions),
+                           surfaces, options, packed);
+    }
     for (const auto& key : keys)
         for (const std::uint32_t g : order)
             for (std::uint32_t k = 0; k < 3; ++k) packed.triangleKeys.emplace_back(key[g * 3 + k], 0.0f);
     packed.triangles.reserve(std::size_t(packed.triangleCount) * 3);
     for (std::uint32_t g : order) {
+        if (g >= flattened && trees) {
+            packed.triangles.push_back(withBits({}, 0x80000000u | std::uint32_t(g - flattened)));
+            packed.triangles.insert(packed.triangles.end(), 2, glm::vec4(0.0f));
+            continue;
+        }
         packed.triangles.push_back(withBits(positions[g * 3 + 0], g));
         packed.triangles.push_back(withBits(positions[g * 3 + 1], surfaces[g].instance));
         packed.triangles.push_back(
@@ -247,6 +287,7 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         if (material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f))
             packed.writtenOutEmitters.push_back(order[slot]);
     }
+    if (trees) trees->append(positions, surfaces, packed);
     const NotShown absent = materialsNotShown(scene, materialUsed, options.occlusion);
     packed.skipped.insert(packed.skipped.end(), absent.anywhere.begin(), absent.anywhere.end());
     packed.rasterSkipped.assign(absent.byRaster.begin(), absent.byRaster.end());

@@ -4,6 +4,7 @@
  * and lights. Host only, so that packing is tested without a device; DeviceScene uploads the result. Every
  * array is a whole number of 16-byte texels and is described beside its accessors in shaders/scene.
  */
+#include "engine/scene/bvh.hpp"
 #include "engine/scene/comparators.hpp"
 #include "engine/scene/shape.hpp"
 
@@ -26,6 +27,8 @@ namespace helio {
 inline constexpr std::uint32_t kMaterialTexels = 49;
 /** Texels per light in PackedScene::lights; shaders/scene/lights.glsl names them. */
 inline constexpr std::uint32_t kLightTexels = 6;
+/** Texels per placement in PackedScene::placed; shaders/scene/placed.glsl names them. */
+inline constexpr std::uint32_t kPlacedTexels = 9;
 
 /** Triangles up to which a scene is written out as code, and as many of a larger one beside its tree. */
 inline constexpr std::uint32_t kWrittenOutTriangles = 64, kWrittenOutBesideTree = 24;
@@ -55,6 +58,11 @@ inline constexpr std::uint32_t kEnvironmentHeader = 4;
  * shaders/raster/shading.glsl has them too. */
 inline constexpr std::uint32_t kDiffuseEnvironmentWidth = 64, kDiffuseEnvironmentHeight = 32;
 
+/** What becomes of a mesh that stands in the scene several times: each is flattened, or it is packed once and
+ * placed (passes/scene/placed_meshes.hpp), all such meshes or those where that saves memory worth a slower
+ * traversal. */
+enum class Placing : std::uint8_t { Flatten, WhereItSaves, Always };
+
 struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
      * order and `nodes` is empty. */
@@ -68,6 +76,8 @@ struct PackOptions {
     bool sampleSurfaces = true;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
     LightChoice lights = LightChoice::Power;
+    /** Of Bvh alone, for scenes that do not move. Hits are the same. */
+    Placing placing = Placing::Flatten;
     /** Triangles take the place of shapes. */
     bool shapesAsTriangles = false;
     /** Occlusion textures are packed: they dim the light of surroundings that nothing is traced to. */
@@ -86,9 +96,15 @@ struct PackedScene {
     /** 3 texels a slot: v0.xyz | bits(g), v1.xyz | bits(instance), v2.xyz | bits(material). World space
      * about PackOptions::origin, transformed in double and rounded once; counter-clockwise is front, mirrored
      * transforms included. A shape takes one slot and one g: centre, a and b of a PlacedShape, and 1 more
-     * than its kind in the upper 4 bits of the material's word. */
+     * than its kind in the upper 4 bits of the material's word. A placement takes one slot and no g: 2^31 +
+     * its index in place of g. Behind all slots lie the placed meshes' triangles, in their own space, without
+     * an instance; their g are those after the flattened triangles'. */
     std::vector<glm::vec4> triangles;
-    /** First g of every instance, and the number of triangles at the end. */
+    /** kPlacedTexels a placement, empty where all is flattened; slots of placed triangles have `placedBits`
+     * for the triangle in its mesh. */
+    std::vector<glm::uvec4> placed;
+    std::uint32_t placedBits = 0;
+    /** First g of every instance, of placed ones that of their mesh, and the number of g at the end. */
     std::vector<std::uint32_t> instanceFirst;
     /** 5 texels a node, see engine/scene/bvh.hpp; of other accelerators the words of a Comparator. Empty
      * without a tree. */
@@ -139,7 +155,7 @@ struct PackedScene {
     std::vector<glm::vec4> diffuseEnvironment;
     double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
     std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
-    std::uint32_t triangleCount = 0;                ///< with shapes
+    std::uint32_t triangleCount = 0;                ///< slots: with shapes and placements
     std::uint32_t shapeCount = 0;
     std::uint32_t listedShapes = 0;  ///< shapes in the last slots, which are in no tree
     bool shapesInTree = false, spheres = false, flatShapes = false, tori = false;
@@ -209,9 +225,12 @@ struct Surface {
 /** What a shape's three vectors among the positions (centre, a, b) say. */
 PlacedShape shapeOf(const glm::vec3* vectors, std::uint32_t shape);
 
-/** World-space positions (3 per g) and attributes; fills everything that is indexed by g. */
+struct PlacedMeshes;
+/** World-space positions (3 per g) and attributes; fills everything that is indexed by g. `placed`: meshes
+ * that follow in their own space, while their instances are left out. PackedScene::triangleCount becomes that
+ * of the flattened triangles. */
 std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, PackedScene& packed,
-                                std::vector<Surface>& surfaces);
+                                std::vector<Surface>& surfaces, PlacedMeshes* placed = nullptr);
 /** Corners of triangles with the same boxes as the shapes, and the triangles themselves: what a tree is built
  * of. */
 std::vector<glm::vec3> treeCorners(std::span<const glm::vec3> positions, std::span<const Surface> surfaces);
@@ -223,7 +242,7 @@ std::vector<glm::vec3> surfaceTriangles(std::span<const glm::vec3> positions,
  * count twice. `fromBothSides`: also those that face the other way, where neither emits; for rays, which meet
  * back faces. Returns how many. */
 std::size_t collapseTwins(const Scene& scene, std::span<const Surface> surfaces, bool fromBothSides,
-                          std::vector<glm::vec3>& positions);
+                          std::span<glm::vec3> positions);
 /** Positions at every time, the first included; fills PackedScene::normalKeys and motionKeys and says which
  * surfaces move. */
 std::vector<std::vector<glm::vec3>> motion(const std::vector<glm::vec3>& positions,
@@ -234,7 +253,8 @@ std::vector<glm::vec3> waysBoxes(const std::vector<std::vector<glm::vec3>>& keys
 /** Materials and textures that some instance uses. */
 void materials(const Scene& scene, const std::vector<bool>& materialUsed, PackedScene& packed);
 /** The light table: emissive triangles (pairs that make a parallelogram as one) and punctual lights, chosen
- * in proportion to power by an alias table; also each material's sampling density per area. */
+ * in proportion to power by an alias table; also each material's sampling density per area. Positions beyond
+ * the surfaces' are further triangles that light falls on. */
 void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<const Surface> surfaces,
             const PackOptions& options, PackedScene& packed);
 

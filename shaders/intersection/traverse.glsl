@@ -14,6 +14,13 @@
  * Distances are compared as integers (IEEE order of non-negative floats; a negative far plane stays negative,
  * which misses), since the float minimum takes three instructions where NaN must be looked after.
  *
+ * With INSTANCES, some places of the tree's leaves stand for placed meshes (shaders/scene/placed.glsl), whose trees hold
+ * boxes in the mesh's own space. A ray that comes to one goes on in that space: its other candidates wait aside, and the
+ * stack keeps an empty entry between the two trees. Triangles are tested in the world, so that the test is the
+ * same for all. The ray's images err: with A the inverse's linear part, o the origin counted from the mesh's, and r the
+ * reach of placed.glsl, a point of the ray within the mesh lies at most 5u |A| |o| + 4u |A| (|o| + r) + u |A| r
+ * beside its image, the last for the rounding of corners. 16u |A| (|o| + r) is put on every side of the boxes.
+ *
  * The order in which triangles are met does not matter: boxes as far as the nearest hit are still entered, and
  * of triangles at the same distance the first in scene order is the hit.
  */
@@ -57,7 +64,7 @@ uint orderedMask(uint mask, uint octant) {
 /** A ray on its way through the tree. */
 struct Traversal {
     RayShear ray;
-#ifdef SHAPES
+#if defined(SHAPES) || defined(INSTANCES)
     vec3 direction;
 #endif
     vec3 inverse;
@@ -76,6 +83,19 @@ struct Traversal {
     int slot;            ///< of the nearest hit so far; -1: none
     int g;               ///< its index in scene order
     int steps;           ///< turns taken
+#ifdef INSTANCES
+    int pending;         ///< placement that the ray is about to enter; -1: none
+    int inside;          ///< scene's instance in whose tree it is; -1: the scene's
+    int slotOffset;      ///< from a triangle's place to its slot
+    int instance;        ///< of the nearest hit so far
+    vec3 from;           ///< origin in the tree's space
+    vec3 margin;         ///< of its boxes, in distances along the ray
+    vec3 worldInverse;
+    Placement placement;
+    uint waitingGroup;   ///< of the scene's tree while the ray is in another
+    uvec3 waitingLeaves;
+    uvec3 waitingNext;
+#endif
 };
 
 /** Groups left behind on the way down, the last one first where all are moved. Not members of Traversal:
@@ -116,7 +136,7 @@ uint exchangeOnStack(uint group, bool push, bool pop) {
 Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, float limit) {
     Traversal t;
     t.ray = shearOf(origin, direction);
-#ifdef SHAPES
+#if defined(SHAPES) || defined(INSTANCES)
     t.direction = direction;
 #endif
     t.inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
@@ -136,11 +156,28 @@ Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, 
     t.slot = -1;
     t.g = -1;
     t.steps = 0;
+#ifdef INSTANCES
+    t.pending = -1;
+    t.inside = -1;
+    t.slotOffset = 0;
+    t.instance = -1;
+    t.from = origin;
+    t.margin = vec3(0.0);
+    t.worldInverse = t.inverse;
+    t.placement = Placement(dvec3(0.0), dvec3(0.0), dvec3(0.0), dvec3(0.0));
+    t.waitingGroup = 0u;
+    t.waitingLeaves = uvec3(0u);
+    t.waitingNext = uvec3(0u);
+#endif
     return t;
 }
 
 bool isBusy(Traversal t) {
+#ifdef INSTANCES
+    return (t.descending || (t.leafMask | t.nextMask) != 0u || t.inside >= 0 || t.pending >= 0) && t.steps < MAX_TRAVERSAL_STEPS;
+#else
     return (t.descending || (t.leafMask | t.nextMask) != 0u) && t.steps < MAX_TRAVERSAL_STEPS;
+#endif
 }
 
 /** Takes the next node off the tree: its leaves go to the queue, its children or the next group become t.group. */
@@ -154,8 +191,13 @@ void visitNode(inout Traversal t) {
     const uvec4 y = texelFetch(uNodes, node + 3);
     const uvec4 z = texelFetch(uNodes, node + 4);
     const vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * t.inverse;
+#ifdef INSTANCES
+    const vec3 offset = (uintBitsToFloat(head.xyz) - t.from) * t.inverse;
+    const vec3 slack = (abs(offset) + 255.0 * abs(step)) * 3.5762787e-7 + t.margin;
+#else
     const vec3 offset = (uintBitsToFloat(head.xyz) - t.ray.origin) * t.inverse;
     const vec3 slack = (abs(offset) + 255.0 * abs(step)) * 3.5762787e-7;
+#endif
     const vec3 nearOffset = offset - slack, farOffset = offset + slack;
     const vec3 step8 = step * 0.00390625, step16 = step * 1.52587890625e-5;
     const bvec3 negative = lessThan(t.inverse, vec3(0.0));
@@ -196,6 +238,15 @@ void visitTriangle(inout Traversal t, const bool any) {
     const vec3 a = sheared(t.ray, movingCorner(candidate, 0));
     const vec3 b = sheared(t.ray, movingCorner(candidate, 1));
     const vec3 c = sheared(t.ray, movingCorner(candidate, 2));
+#elif defined(INSTANCES)
+    const uvec4 second = texelFetch(uTriangles, candidate * 3 + 1);
+    const vec3 v0 = uintBitsToFloat(first.xyz), v1 = uintBitsToFloat(second.xyz);
+    const vec3 v2 = uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 2).xyz);
+    const bool inside = t.inside >= 0;
+    const vec3 a = sheared(t.ray, inside ? placedCorner(t.placement, v0) : v0);
+    const vec3 b = sheared(t.ray, inside ? placedCorner(t.placement, v1) : v1);
+    const vec3 c = sheared(t.ray, inside ? placedCorner(t.placement, v2) : v2);
+    const int instance = inside ? t.inside : int(second.w);
 #else
     const vec3 a = sheared(t.ray, uintBitsToFloat(first.xyz));
     const vec3 b = sheared(t.ray, uintBitsToFloat(texelFetch(uTriangles, candidate * 3 + 1).xyz));
@@ -204,10 +255,17 @@ void visitTriangle(inout Traversal t, const bool any) {
     const int g = int(first.w);
     float distance;
     bool hit = lineMeetsTriangle(t.ray, a, b, c, distance);
-    bool counts = candidate != t.source;
+#ifdef INSTANCES
+    const int slot = candidate + t.slotOffset;
+    const bool stands = int(first.w) < 0;  // for a placement
+    t.pending = stands ? g & 0x7fffffff : -1;
+#else
+    const int slot = candidate;
+#endif
+    bool counts = slot != t.source;
 #ifdef SHAPES
     if (SHAPES_IN_TREE) {
-        const Triangle shape = fetchTriangle(candidate);
+        const Triangle shape = fetchTriangle(slot);
         float there;
         const bool meets = meetsShape(t.ray, t.direction, shape, !counts, INFINITE_DISTANCE, there);
         hit = shape.shape > 0 ? meets : hit;
@@ -215,22 +273,78 @@ void visitTriangle(inout Traversal t, const bool any) {
         counts = counts || shape.shape > 0;
     }
 #endif
-    hit = hit && (isNearer(distance, t.nearest) || (!any && distance == t.nearest && g < t.g));
+#ifdef INSTANCES
+    const bool before = instance < t.instance || (instance == t.instance && g < t.g);
+    hit = hit && !stands;
+#else
+    const bool before = g < t.g;
+#endif
+    hit = hit && (isNearer(distance, t.nearest) || (!any && distance == t.nearest && before));
     hit = hit && counts;
     if (any) hit = hit && (g < t.target.x || g > t.target.y);
     t.nearest = hit ? distance : t.nearest;
-    t.slot = hit ? candidate : t.slot;
+    t.slot = hit ? slot : t.slot;
     t.g = hit ? g : t.g;
+#ifdef INSTANCES
+    t.instance = hit ? instance : t.instance;
+#endif
     if (any && hit) {
         t.leafMask = 0u;
         t.nextMask = 0u;
         t.descending = false;
+#ifdef INSTANCES
+        t.inside = -1;
+#endif
     }
 }
 
-/** One turn: a node where the queue has room, and a triangle where one waits. */
-void takeTurn(inout Traversal t, const bool any) {
-    ++t.steps;
+#ifdef INSTANCES
+/** Whether the ray has come to a placed mesh, or to the end of one. */
+bool changesTree(Traversal t) {
+    return t.pending >= 0 || (t.inside >= 0 && !t.descending && (t.leafMask | t.nextMask) == 0u);
+}
+
+/** Takes the ray into the placed mesh that it has come to, or back to the scene's tree. */
+void changeTree(inout Traversal t) {
+    const bool enters = t.pending >= 0;
+    const int index = max(t.pending, 0) * 9;
+    const Placement placement = placementOf(max(t.pending, 0));
+    const uvec4 row0 = texelFetch(uPlaced, index + 6), row1 = texelFetch(uPlaced, index + 7), row2 = texelFetch(uPlaced, index + 8);
+    const vec3 x = uintBitsToFloat(row0.xyz), y = uintBitsToFloat(row1.xyz), z = uintBitsToFloat(row2.xyz);
+    const vec3 moved = vec3(dvec3(t.ray.origin) - placement.origin);
+    const vec3 direction = vec3(dot(x, t.direction), dot(y, t.direction), dot(z, t.direction));
+    const vec3 inverse = vec3(finiteInverse(direction.x), finiteInverse(direction.y), finiteInverse(direction.z));
+    const float reach = uintBitsToFloat((row0.w >> 24) << 23);
+    const float size = (max(max(abs(moved.x), abs(moved.y)), abs(moved.z)) + reach) * 9.5367431640625e-07;
+    const vec3 rows = vec3(dot(abs(x), vec3(1.0)), dot(abs(y), vec3(1.0)), dot(abs(z), vec3(1.0)));
+    t.from = enters ? vec3(dot(x, moved), dot(y, moved), dot(z, moved)) : t.ray.origin;
+    t.inverse = enters ? inverse : t.worldInverse;
+    t.margin = enters ? rows * size * abs(inverse) : vec3(0.0);
+    t.octant = (t.inverse.x < 0.0 ? 1u : 0u) | (t.inverse.y < 0.0 ? 2u : 0u) | (t.inverse.z < 0.0 ? 4u : 0u);
+    t.placement = placement;
+    t.slotOffset = enters ? int(row1.w) : 0;
+    t.inside = enters ? int(row2.w) : -1;
+    t.pending = -1;
+    // What is left of the one tree takes the other's place.
+    const uint group = t.group;
+    const uvec3 leaves = uvec3(t.leafMask, t.leafAll, t.leafBase), next = uvec3(t.nextMask, t.nextAll, t.nextBase);
+    t.group = enters ? ((row0.w & 0xffffffu) << 8) | (1u << t.octant) : t.waitingGroup;
+    t.descending = t.group != 0u;
+    t.leafMask = enters ? 0u : t.waitingLeaves.x;
+    t.leafAll = t.waitingLeaves.y;
+    t.leafBase = t.waitingLeaves.z;
+    t.nextMask = enters ? 0u : t.waitingNext.x;
+    t.nextAll = t.waitingNext.y;
+    t.nextBase = t.waitingNext.z;
+    t.waitingGroup = group;
+    t.waitingLeaves = leaves;
+    t.waitingNext = next;
+    exchangeOnStack(0u, enters, false);
+}
+#endif
+
+/** A node where the queue has room, and a triangle where one waits. */
+void takeStep(inout Traversal t, const bool any) {
     if (t.descending && t.nextMask == 0u) visitNode(t);
     if (t.leafMask == 0u) {
         t.leafMask = t.nextMask;
@@ -239,6 +353,25 @@ void takeTurn(inout Traversal t, const bool any) {
         t.nextMask = 0u;
     }
     if (t.leafMask != 0u) visitTriangle(t, any);
+}
+
+#ifdef INSTANCES
+/** Steps after which rays may change trees: that costs as much as a step, whether a lane does it or not. */
+const int STEPS_IN_TREE = 4;
+#endif
+
+/** One turn: a step. */
+void takeTurn(inout Traversal t, const bool any) {
+    ++t.steps;
+#ifdef INSTANCES
+    if (changesTree(t)) changeTree(t);
+    for (int i = 0; i < STEPS_IN_TREE; ++i) {
+        ++t.steps;
+        if (!changesTree(t)) takeStep(t, any);
+    }
+#else
+    takeStep(t, any);
+#endif
 }
 
 /** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`

@@ -24,13 +24,35 @@ vec3 vertexNormal(int g, int corner) {
 }
 #endif
 
-/** Interpolated shading normal, unit; `face` (unit) where the scene has none or the interpolation vanishes. */
-vec3 shadingNormal(int g, vec3 b, vec3 face) {
-    if (!HAS_NORMALS) return face;
-    const vec3 n = b.x * vertexNormal(g, 0) + b.y * vertexNormal(g, 1) + b.z * vertexNormal(g, 2);
+/** Unit; `face` (unit) where the interpolation vanishes. */
+vec3 interpolatedNormal(vec3 n0, vec3 n1, vec3 n2, vec3 b, vec3 face) {
+    const vec3 n = b.x * n0 + b.y * n1 + b.z * n2;
     const float squared = dot(n, n);
     return squared > 1e-12 ? n * inversesqrt(squared) : face;
 }
+
+/** Interpolated shading normal, unit; `face` (unit) where the scene has none or the interpolation vanishes. */
+vec3 shadingNormal(int g, vec3 b, vec3 face) {
+    if (!HAS_NORMALS) return face;
+    return interpolatedNormal(vertexNormal(g, 0), vertexNormal(g, 1), vertexNormal(g, 2), b, face);
+}
+
+#ifdef INSTANCES
+#include "shaders/scene/triangles.glsl"
+
+/** shadingNormal() of a triangle that may be placed: its corners' normals are the mesh's then. */
+vec3 shadingNormal(Triangle t, vec3 b, vec3 face) {
+    if (!HAS_NORMALS) return face;
+    vec3 n0 = vertexNormal(t.g, 0), n1 = vertexNormal(t.g, 1), n2 = vertexNormal(t.g, 2);
+    if (t.placed >= 0) {
+        const Placement placement = placementOf(t.placed);
+        n0 = placedNormal(placement, n0);
+        n1 = placedNormal(placement, n1);
+        n2 = placedNormal(placement, n2);
+    }
+    return interpolatedNormal(n0, n1, n2, b, face);
+}
+#endif
 
 /** Both slots of texture coordinates: whichever sets the triangle's material names. */
 vec4 texcoords(int g, vec3 b) {

@@ -6,6 +6,11 @@
  * is compiled with MOTION_KEYS, one with shapes beside its triangles with SHAPES (shaders/intersection/shape.glsl).
  */
 #include "shaders/scene/features.glsl"
+#ifdef INSTANCES
+#include "shaders/scene/placed.glsl"
+
+layout(constant_id = 160) const int PLACED_BITS = 0;  ///< of a triangle in its mesh, see placed.glsl
+#endif
 
 /** 3 texels a slot: v0.xyz | g, v1.xyz | instance, v2.xyz | material. */
 layout(set = 0, binding = 20) uniform usamplerBuffer uTriangles;
@@ -17,6 +22,9 @@ struct Triangle {
     int g;         ///< index in scene order: of normals, texcoords, colours
     int instance;
     int material;
+#ifdef INSTANCES
+    int placed;    ///< its placement in uPlaced, -1 for none: then corners and attributes are the world's
+#endif
 #ifdef SHAPES
     int shape;  ///< SHAPE_..., whose centre is v0, and v1 and v2 its axes; 0 for a triangle
 #endif
@@ -55,9 +63,16 @@ float movingLength(int slot, int corner) {
 #endif
 
 Triangle fetchTriangle(int slot) {
-    const uvec4 a = texelFetch(uTriangles, slot * 3);
-    const uvec4 b = texelFetch(uTriangles, slot * 3 + 1);
-    const uvec4 c = texelFetch(uTriangles, slot * 3 + 2);
+#ifdef INSTANCES
+    const int placed = slot < TRIANGLE_COUNT ? -1 : (slot - TRIANGLE_COUNT) >> PLACED_BITS;
+    const int before = placed < 0 ? 0 : int(texelFetch(uPlaced, placed * 9 + 7).w);
+    const int texel = (slot - before) * 3;
+#else
+    const int texel = slot * 3;
+#endif
+    const uvec4 a = texelFetch(uTriangles, texel);
+    const uvec4 b = texelFetch(uTriangles, texel + 1);
+    const uvec4 c = texelFetch(uTriangles, texel + 2);
     Triangle t;
     t.v0 = uintBitsToFloat(a.xyz);
     t.v1 = uintBitsToFloat(b.xyz);
@@ -65,6 +80,16 @@ Triangle fetchTriangle(int slot) {
     t.g = int(a.w);
     t.instance = int(b.w);
     t.material = int(c.w);
+#ifdef INSTANCES
+    t.placed = placed;
+    if (placed >= 0) {
+        const Placement placement = placementOf(placed);
+        t.v0 = placedCorner(placement, t.v0);
+        t.v1 = placedCorner(placement, t.v1);
+        t.v2 = placedCorner(placement, t.v2);
+        t.instance = int(texelFetch(uPlaced, placed * 9 + 8).w);
+    }
+#endif
 #ifdef MOTION_KEYS
     t.v0 = movingCorner(slot, 0);
     t.v1 = movingCorner(slot, 1);

@@ -30,8 +30,10 @@ struct Built {
     PathCounters counters;
 };
 
-Built build(Scene scene, bool counts = false, int bounces = -1) {
+Built build(Scene scene, bool counts = false, int bounces = -1,
+            Placing placing = PathTraceOptions{}.placing) {
     PathTraceOptions options;
+    options.placing = placing;
     options.size = {8, 8};
     options.bounces = bounces;
     const PlacedCamera placed = chooseCamera(scene, {}, 1.0);
@@ -120,7 +122,8 @@ TEST(FeaturesOff, OneMaterialInTheSceneIsOneMaterialInTheKernel) {
     }
 }
 
-/** Placing a mesh twice puts triangles into the world and nothing into the kernel. */
+/** Placing a mesh twice puts triangles into the world and nothing into the kernel, but where meshes are
+ * packed once for all of many placements. */
 TEST(FeaturesOff, InstancesAreNoCode) {
     SceneBuilder once = plainRoom(), twice = plainRoom();
     once.sphere({0, 0, 0}, 0.3f, 2, false, 0);
@@ -133,6 +136,10 @@ TEST(FeaturesOff, InstancesAreNoCode) {
     EXPECT_EQ(two.bindings, one.bindings);
     // Constants (the tree's depth) may differ.
     EXPECT_NEAR(double(two.instructions), double(one.instructions), 0.1 * double(one.instructions));
+    const SpecializedKernel placed = build(twice.scene, false, -1, Placing::Always).code;
+    EXPECT_TRUE(placed.bindings.contains("uPlaced"));
+    EXPECT_FALSE(two.bindings.contains("uPlaced"));
+    EXPECT_EQ(build(once.scene, false, -1, Placing::Always).code.bindings, one.bindings);
 }
 
 /** What nothing in use names takes no memory either. */
