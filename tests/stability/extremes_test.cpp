@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace helio::test {
 namespace {
@@ -95,14 +96,38 @@ TEST(Extremes, GlassOfIndexOneIsNotThere) {
     }
 }
 
+void moveCamera(Scene& scene, const glm::vec3& eye) {
+    (*scene.nodes.back().matrix)[3] = glm::vec4(eye, 1);
+}
+
 TEST(Extremes, CamerasInsideAndOnSurfaces) {
-    for (const float z : {1.0f, kBelowOne, 0x1.000002p+0f, 0.0f}) {
+    Material volume;
+    volume.metallic = volume.roughness = 0;
+    volume.transmission = volume.thickness = 1;
+    for (const bool isGltf : {false, true}) {
         KnownScene glass = glassBall(1.5f);
-        glass.scene.nodes.back().translation = {0, 0, z};
-        expectMean(glass, options(16, 64), fmt::format("camera in glass at {}", z), 0.1);
-        if (z > 1) continue;
+        if (isGltf) glass.scene.materials[0] = volume;
+        const auto seen = [&](float z) {
+            moveCamera(glass.scene, {0, 0, z});
+            return meanOf(rendered(glass.scene, options(16, 64)).image);
+        };
+        // In a medium of index n all directions bring n^2 times the light, mirrored at the border or not.
+        for (const auto& [z, truth] : {std::pair{1.01f, 1.0}, std::pair{0.5f, 2.25}, std::pair{0.0f, 2.25}}) {
+            const Mean mean = seen(z);
+            EXPECT_NEAR(mean.value, truth, 4.5 * mean.error + 1e-5)
+                << "camera at " << z << ", glTF " << isGltf;
+            EXPECT_LT(mean.error, 0.1);
+        }
+        // In the surface itself it is in or out.
+        for (const float z : {1.0f, kBelowOne, 0x1.000002p+0f}) {
+            const Mean mean = seen(z);
+            EXPECT_GT(mean.value, 1 - 4.5 * mean.error - 1e-5) << z;
+            EXPECT_LT(mean.value, 2.25 + 4.5 * mean.error + 1e-5) << z;
+        }
+    }
+    for (const float z : {1.0f, kBelowOne, 0.0f}) {
         KnownScene room = furnace(0.5f);  // in a wall's plane, looking into the room
-        room.scene.nodes.back().translation = {0.1f, 0.2f, z};
+        moveCamera(room.scene, {0.1f, 0.2f, z});
         expectMean(room, options(), fmt::format("camera in a wall at {}", z));
     }
 }
