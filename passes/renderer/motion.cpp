@@ -78,7 +78,8 @@ std::optional<Shutter> shutterOf(const Scene& scene, const RenderOptions& option
 
 Motion motionOf(const Scene& scene, const RenderOptions& options) {
     Motion motion;
-    if (!needsPose(scene)) {
+    const bool namesAnimation = !options.animation.empty() && options.animation != "none";
+    if (!needsPose(scene) && !namesAnimation) {
         scene.validate();
         return motion;
     }

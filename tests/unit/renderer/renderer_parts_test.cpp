@@ -1,10 +1,13 @@
 // The renderer's parts that need no device.
 #include "passes/renderer/frame.hpp"
 #include "passes/renderer/lighting.hpp"
+#include "passes/renderer/motion.hpp"
 #include "passes/renderer/prepared_scene.hpp"
 #include "passes/renderer/process_clock.hpp"
 #include "passes/renderer/sample_schedule.hpp"
 #include "passes/renderer/scene_identity.hpp"
+
+#include <heliograph/error.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -211,6 +214,15 @@ TEST(ChooseView, FramesASceneWithoutACameraAndLeavesItAsItWas) {
     const View framed = chooseView(scene, "", 1);
     EXPECT_EQ(scene.cameras.size(), cameras);
     EXPECT_NE(framed.transform, own.transform);
+}
+
+TEST(MotionOf, AnAnimationThatIsNotThereIsRefused) {
+    const Scene scene = load("sample:cornell");
+    RenderOptions options;
+    options.animation = "none";
+    EXPECT_FALSE(motionOf(scene, options).first.has_value());
+    options.animation = "walk";
+    EXPECT_THROW(motionOf(scene, options), InputError);
 }
 
 TEST(ChooseView, FramesAFlatPictureFromItsFace) {
