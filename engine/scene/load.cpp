@@ -1,3 +1,4 @@
+#include "engine/image/read_file.hpp"
 #include "engine/scene/degenerate.hpp"
 #include "engine/scene/gltf/gltf.hpp"
 #include "engine/scene/load_monitor.hpp"
@@ -8,7 +9,13 @@
 #include <heliograph/file.hpp>
 #include <heliograph/scene.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <new>
+#include <span>
+#include <string_view>
 
 namespace helio {
 namespace {
@@ -24,8 +31,28 @@ Scene loadMeshFile(MeshImporter importer, const std::string& file, const LoadOpt
     throw InputError(file, "", "does not fit in memory", "give a smaller file");
 }
 
+/** A file by another format's name is refused with its own: what its importer would say of it helps no one.
+ */
+void checkName(const std::string& file, const std::string& extension) {
+    const FileSource source(file);
+    std::array<char, 5> start{};
+    source.read(0, std::as_writable_bytes(
+                       std::span(start).first(std::min(start.size(), std::size_t(source.size())))));
+    const std::string_view text(start.data(), start.size());
+    const bool isGltfName = extension == ".gltf" || extension == ".glb";
+    const char* is = nullptr;
+    if (text.starts_with("glTF") && !isGltfName) is = ".glb";
+    if ((text.starts_with("ply\n") || text.starts_with("ply\r")) && extension != ".ply") is = ".ply";
+    if (is != nullptr)
+        throw InputError(file, "first bytes", fmt::format("are those of a {} file", is),
+                         fmt::format("name it {}", is));
+}
+
 Scene loadFile(const std::string& file, const LoadOptions& options, LoadMonitor& monitor) {
     const std::string extension = lowerCaseExtension(file);
+    if (extension == ".gltf" || extension == ".glb" || extension == ".obj" || extension == ".ply" ||
+        extension == ".stl")
+        checkName(file, extension);
     if (extension == ".gltf" || extension == ".glb") return loadGltf(file, options, monitor);
     if (extension == ".obj") return loadMeshFile(loadObj, file, options, monitor);
     if (extension == ".ply") return loadMeshFile(loadPly, file, options, monitor);

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <set>
+#include <tuple>
 
 namespace helio::test {
 namespace {
@@ -55,6 +56,25 @@ TEST_F(Gltf, LoadingStopsWhereverItIsAskedTo) {
             EXPECT_EQ(calls, allowed + 1) << "asked again after it was told to stop";
         }
     }
+}
+
+TEST_F(Gltf, AFileByAnotherFormatsNameIsToldItsOwn) {
+    const std::string glb = GltfDocument::triangle().glb();
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n";
+    const std::tuple<const char*, std::string, const char*> files[] = {
+        {"a.obj", glb, "name it .glb"}, {"a.stl", glb, "name it .glb"}, {"a.PLY", glb, "name it .glb"},
+        {"b.obj", ply, "name it .ply"}, {"b.stl", ply, "name it .ply"}, {"b.gltf", ply, "name it .ply"}};
+    for (const auto& [name, content, remedy] : files) {
+        try {
+            helio::load(write(name, content).string());
+            ADD_FAILURE() << name;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.remedy, remedy) << error.what();
+        }
+    }
+    EXPECT_EQ(helio::load(write("a.gltf", glb).string()).triangleCount(), 1u);  // of two names of one format
 }
 
 /** What is said where a scene cannot be loaded; empty where it can. */
