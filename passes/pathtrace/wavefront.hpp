@@ -26,8 +26,9 @@ public:
         std::vector<Binding> reads, modifies;  ///< of the graph that the constructor is given
     };
 
-    /** Pixels of a picture at most: 65,535 workgroups of 128. */
-    static constexpr std::uint64_t kMostPixels = 65535ull * 128;
+    /** Pixels of a picture at most: 65,535 workgroups of 128, and what a storage buffer of shadow rays holds.
+     */
+    static std::uint64_t mostPixels(const Device& device);
 
     Wavefront(Device& device, std::array<std::uint32_t, 2> size);
 

@@ -251,7 +251,7 @@ std::vector<PassTiming> timingsSince(const std::vector<PassTiming>& before, std:
 
 }  // namespace
 
-void checkPathSize(const RenderOptions& options) {
+void checkPathSize(const RenderOptions& options, const Device& device) {
     const std::array<std::uint32_t, 2>& size = options.size;
     // The path tracer keeps 4 x 2 texels of state per pixel, the film 2 x 3, in images of at most 16384
     // texels.
@@ -259,11 +259,11 @@ void checkPathSize(const RenderOptions& options) {
         throw InputError("", "size",
                          fmt::format("{}x{} pixels are too many for the path pipeline", size[0], size[1]),
                          fmt::format("give at most 4096x{}", kMaxFilmHeight));
-    if (options.scheduler == Scheduler::Wavefront &&
-        std::uint64_t(size[0]) * size[1] > Wavefront::kMostPixels)
+    const std::uint64_t queued = Wavefront::mostPixels(device);
+    if (options.scheduler == Scheduler::Wavefront && std::uint64_t(size[0]) * size[1] > queued)
         throw InputError("", "scheduler",
                          fmt::format("{}x{} pixels are too many for the wavefront", size[0], size[1]),
-                         fmt::format("give at most {} pixels, or the megakernel", Wavefront::kMostPixels));
+                         fmt::format("give at most {} pixels, or the megakernel", queued));
     const int most = BounceLayers::most(size);
     if (options.bounces > most)
         throw InputError("", "bounces",

@@ -10,8 +10,9 @@
 
 namespace helio {
 
-/** Throws InputError for a size that the path pipeline cannot hold, by itself or with so many bounces. */
-void checkPathSize(const RenderOptions& options);
+/** Throws InputError for a size that the path pipeline cannot hold on the device, by itself, with so many
+ * bounces or under its scheduler. */
+void checkPathSize(const RenderOptions& options, const Device& device);
 /** The path tracer's options for a render. */
 PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTimes& shutter = {});
 

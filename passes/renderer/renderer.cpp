@@ -317,7 +317,7 @@ RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) 
     RenderJob job(options);
     RenderResult& result = job.result;
     check(options);
-    if (options.pipeline == Pipeline::Path) checkPathSize(options);
+    if (options.pipeline == Pipeline::Path) checkPathSize(options, impl_->device);
     Motion motion = motionOf(scene, options);
     std::optional<Scene>& still = motion.first;  // only a scene that moves is copied
     check(options.environment, scene);
