@@ -19,6 +19,9 @@
 namespace helio {
 namespace {
 
+/** Lights up to which each has code of its own (addLights of shaders/raster/shading.glsl). */
+constexpr std::uint32_t kFewLights = 4;
+
 /** Lights of one pass: some drivers end loops silently after 65,535 iterations. */
 constexpr std::uint32_t kLightsPerPass = 8192;
 
@@ -206,7 +209,9 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
     common.spec["SCENE_ORDER"] = inSceneOrder();
     common.spec["ORTHOGRAPHIC"] = view->orthographic;
     common.spec["SHADOWS"] = std::int32_t(shadows_.needed() ? shadowKind_ : Shadows::Kind::None);
-    common.spec["ONE_LIGHT"] = scene_.info().lightCount - (lightSamples_ > 0 ? surfaceLights_ : 0) == 1;
+    // Shadow maps' code is too long to be there several times.
+    const std::uint32_t single = scene_.info().lightCount - (lightSamples_ > 0 ? surfaceLights_ : 0);
+    common.spec["FEW_LIGHTS"] = std::int32_t(single <= (shadows_.needed() ? 1u : kFewLights) ? single : 0);
     common.firstSpec = common.spec;
     if (lightSamples_ > 0) {
         common.firstSpec["LIGHT_SAMPLES"] = std::int32_t(lightSamples_);

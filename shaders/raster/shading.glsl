@@ -18,7 +18,7 @@ layout(set = 0, binding = 3) uniform samplerBuffer uEnvironment;    ///< constan
 #endif
 
 layout(constant_id = 121) const bool SCENE_ORDER = true;    ///< triangles lie in the order of their ids
-layout(constant_id = 145) const bool ONE_LIGHT = false;     ///< the light push.first alone: no loop, which costs some drivers more than its turn
+layout(constant_id = 145) const int FEW_LIGHTS = 0;  ///< so many lights from push.first on, up to 4, without a loop, which costs some drivers more than its turns; 0: a loop
 layout(constant_id = 128) const int LIGHT_SAMPLES = 0;       ///< emissive surfaces that a pixel draws; 0: push's range has them all
 layout(constant_id = 129) const int AREA_LIGHTS = 0;    ///< their number, where they are drawn
 layout(set = 0, binding = 0, std430) readonly buffer uVisibility { uvec2 visibility[]; };  ///< id's complement, depth; of every sample
@@ -261,9 +261,13 @@ void addBlinnPhong(int light, vec3 position, vec3 normal, vec3 toEye, float expo
 LightSums blinnPhongSums(ivec2 pixel, vec3 position, vec3 normal, vec3 toEye, float exponent, vec3 faceNormal, int g) {
     LightSums sums = LightSums(vec3(0.0), vec3(0.0));
     if (LIGHT_SAMPLES > 0) sums.diffuse = drawnIrradiance(pixel, position, normal);
-    if (ONE_LIGHT)
-        addBlinnPhong(int(push.first), position, normal, toEye, exponent, faceNormal, g, sums);
-    else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+    if (FEW_LIGHTS > 0) {
+        int light = int(push.first);
+        addBlinnPhong(light, position, normal, toEye, exponent, faceNormal, g, sums);
+        if (FEW_LIGHTS > 1) addBlinnPhong(light + 1, position, normal, toEye, exponent, faceNormal, g, sums);
+        if (FEW_LIGHTS > 2) addBlinnPhong(light + 2, position, normal, toEye, exponent, faceNormal, g, sums);
+        if (FEW_LIGHTS > 3) addBlinnPhong(light + 3, position, normal, toEye, exponent, faceNormal, g, sums);
+    } else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
         for (uint light = push.first; light < push.first + push.count; ++light)
             addBlinnPhong(int(light), position, normal, toEye, exponent, faceNormal, g, sums);
     return sums;
@@ -302,9 +306,13 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 #else
     vec3 irradiance = vec3(0.0), gloss = vec3(0.0);
     if (LIGHT_SAMPLES > 0) irradiance = drawnIrradiance(pixel, shaded.position, shaded.normal);
-    if (ONE_LIGHT)
-        addLight(int(push.first), shaded, irradiance, gloss);
-    else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
+    if (FEW_LIGHTS > 0) {
+        int light = int(push.first);
+        addLight(light, shaded, irradiance, gloss);
+        if (FEW_LIGHTS > 1) addLight(light + 1, shaded, irradiance, gloss);
+        if (FEW_LIGHTS > 2) addLight(light + 2, shaded, irradiance, gloss);
+        if (FEW_LIGHTS > 3) addLight(light + 3, shaded, irradiance, gloss);
+    } else if (HAS_AREA_LIGHTS || HAS_PUNCTUAL_LIGHTS)
         for (uint light = push.first; light < push.first + push.count; ++light)
             addLight(int(light), shaded, irradiance, gloss);
     return shaded.diffuse * (INV_PI * irradiance) + gloss;

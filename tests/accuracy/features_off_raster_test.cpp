@@ -107,16 +107,22 @@ std::size_t loops(const std::vector<std::uint32_t>& spirv) {
     return count;
 }
 
-TEST(RasterFeaturesOff, NoLoopForOneLight) {
+TEST(RasterFeaturesOff, NoLoopForFewLights) {
     SceneBuilder room = plainRoom();
     EXPECT_EQ(loops(shading(room.scene).spirv), 0u);
     room.pointLight({0, 0.5f, 0}, glm::vec3(1.0f));
     const SpecializedKernel one = shading(room.scene);
-    room.pointLight({0.5f, 0.5f, 0}, glm::vec3(1.0f));
-    const SpecializedKernel two = shading(room.scene);
-    fmt::print("loops: {} with one light, {} with two\n", loops(one.spirv), loops(two.spirv));
+    for (int i = 1; i < 4; ++i) room.pointLight({0.2f * float(i), 0.5f, 0}, glm::vec3(1.0f));
+    const SpecializedKernel four = shading(room.scene);
+    room.pointLight({-0.2f, 0.5f, 0}, glm::vec3(1.0f));
+    const SpecializedKernel five = shading(room.scene);
+    fmt::print("loops: {} with one light, {} with four, {} with five\n", loops(one.spirv), loops(four.spirv),
+               loops(five.spirv));
     EXPECT_EQ(loops(one.spirv), 0u);
-    EXPECT_EQ(loops(two.spirv), 1u);
+    EXPECT_EQ(loops(four.spirv), 0u);
+    EXPECT_GT(four.instructions, one.instructions);
+    EXPECT_EQ(loops(five.spirv), 1u);
+    EXPECT_LT(five.instructions, four.instructions);
 }
 
 TEST(RasterFeaturesOff, NoPassesAndNoWorkForWhatIsNotThere) {
