@@ -19,8 +19,8 @@ namespace {
 
 /** What a flattened triangle and a placement take on the device and the host, roughly: bytes. */
 constexpr double kBytesOfTriangle = 120, kBytesOfPlacement = 400;
-/** What placing must save: below, rays through one tree are worth more. */
-constexpr double kWorthwhile = 64.0 * (1 << 20);
+/** What placing must save: below, rays are worth more, which take up to twice as long through two trees. */
+constexpr double kWorthwhile = 1024.0 * (1 << 20);
 /** Of a placement: |M| |M^-1|, by largest sums of rows. */
 constexpr double kMostSkew = 1e4;
 /** Of a placement from the origin, in sizes of the mesh: beyond, the rounding of corners in the world is more

@@ -343,8 +343,12 @@ void changeTree(inout Traversal t) {
 }
 #endif
 
-/** A node where the queue has room, and a triangle where one waits. */
-void takeStep(inout Traversal t, const bool any) {
+/** One turn: a node where the queue has room, and a triangle where one waits. */
+void takeTurn(inout Traversal t, const bool any) {
+    ++t.steps;
+#ifdef INSTANCES
+    if (changesTree(t)) changeTree(t);
+#endif
     if (t.descending && t.nextMask == 0u) visitNode(t);
     if (t.leafMask == 0u) {
         t.leafMask = t.nextMask;
@@ -353,25 +357,6 @@ void takeStep(inout Traversal t, const bool any) {
         t.nextMask = 0u;
     }
     if (t.leafMask != 0u) visitTriangle(t, any);
-}
-
-#ifdef INSTANCES
-/** Steps after which rays may change trees: that costs as much as a step, whether a lane does it or not. */
-const int STEPS_IN_TREE = 4;
-#endif
-
-/** One turn: a step. */
-void takeTurn(inout Traversal t, const bool any) {
-    ++t.steps;
-#ifdef INSTANCES
-    if (changesTree(t)) changeTree(t);
-    for (int i = 0; i < STEPS_IN_TREE; ++i) {
-        ++t.steps;
-        if (!changesTree(t)) takeStep(t, any);
-    }
-#else
-    takeStep(t, any);
-#endif
 }
 
 /** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`
