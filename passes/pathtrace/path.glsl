@@ -97,6 +97,9 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
             if (HAS_SPHERES && s.triangle.shape == SHAPE_SPHERE)
                 sampled = areaDensity * sphereDensity(path.origin, s.triangle.v0, length(s.triangle.v1), distance, cosine);
 #endif
+#ifdef SOLID_ANGLES
+            if (emits && sampled > 0.0) sampled = solidAngleDensity(path.origin, path.lightPlace, s.triangle.g, sampled);
+#endif
             weight = path.density < 0.0 ? 1.0 : path.density / (path.density + sampled);
         }
         path.radiance += emits ? path.throughput * e.radiance * weight : vec3(0.0);

@@ -150,6 +150,8 @@ struct PathTracer::Impl {
             buffers.insert(buffers.end(), {"uLightSlots", "uLightCells", "uLightRanges", "uLightOfTriangle"});
             spec.merge(scene_.lightTableConstants());
         }
+        if (scene_.info().solidAngles != 0)
+            defines["SOLID_ANGLES"] = std::to_string(scene_.info().solidAngles);
         std::vector<Binding> ends;
         if (options_.adaptive) {
             defines["ADAPTIVE"] = "1";

@@ -1,6 +1,7 @@
 #include "passes/scene/alias_table.hpp"
 #include "passes/scene/light_tables.hpp"
 #include "passes/scene/packed_scene.hpp"
+#include "passes/scene/solid_angle_gain.hpp"
 
 #include <glm/gtc/constants.hpp>
 
@@ -28,6 +29,8 @@ struct Candidate {
 
 /** Most lights that Adaptive chooses among by power. */
 constexpr std::size_t kFewLights = 2;
+/** Of SolidAngleGain, for which the cost of sampling by solid angle is paid. */
+constexpr double kLeastGain = 0.1;
 
 double mean(const glm::dvec3& rgb) {
     return (rgb.x + rgb.y + rgb.z) / 3.0;
@@ -268,6 +271,21 @@ void makeTables(std::vector<Candidate>& lights, std::span<const glm::vec3> posit
     }
 }
 
+/** PackedScene::solidAngles for these lights. */
+std::uint32_t solidAnglesOf(const std::vector<Candidate>& lights, std::span<const glm::vec3> places,
+                            const std::function<bool(std::size_t)>& receives) {
+    std::vector<FlatLight> flat;
+    for (const Candidate& light : lights) {
+        if (light.kind != LightKind::Triangle && light.kind != LightKind::Parallelogram &&
+            light.kind != LightKind::Quad)
+            continue;
+        flat.push_back({light.origin, light.edge1, light.edge2, mean(glm::dvec3(light.radiance)),
+                        light.kind == LightKind::Triangle, light.doubleSided});
+    }
+    const SolidAngleGain gain = solidAngleGain(flat, places, receives);
+    return (gain.rectangles > kLeastGain ? 1u : 0u) | (gain.triangles > kLeastGain ? 2u : 0u);
+}
+
 glm::vec4 texel(const glm::dvec3& v, float w) {
     return {glm::vec3(v), w};
 }
@@ -296,11 +314,22 @@ void lights(const Scene& scene, std::span<const glm::vec3> positions, std::span<
     packed.lightCount = std::uint32_t(candidates.size());
     if (candidates.empty()) return;
 
+    const std::span<const glm::vec3> places =
+        onShapes.empty() ? positions : std::span<const glm::vec3>(onShapes);
+    // Which light a triangle belongs to is told by the tables alone.
+    if (candidates.size() == 1 || options.lights != LightChoice::Power)
+        packed.solidAngles = solidAnglesOf(candidates, places, [&](std::size_t triangle) {
+            // Lamps are mostly black. Triangles on shapes and of placed meshes are not told apart.
+            if (!onShapes.empty() || triangle >= surfaces.size()) return true;
+            const std::uint32_t material = surfaces[triangle].material;
+            return material >= scene.materials.size() ||
+                   !(mean(glm::dvec3(scene.materials[material].emission)) > 0.0);
+        });
     // With few lights the tables gain nothing that pays for reading them.
-    const std::size_t few = options.lights == LightChoice::Adaptive ? kFewLights : 1;
+    const std::size_t few =
+        options.lights == LightChoice::Adaptive && packed.solidAngles == 0 ? kFewLights : 1;
     if (options.lights != LightChoice::Power && candidates.size() > few)
-        makeTables(candidates, onShapes.empty() ? positions : onShapes, surfaces.size(),
-                   options.lights == LightChoice::Adaptive, packed);
+        makeTables(candidates, places, surfaces.size(), options.lights == LightChoice::Adaptive, packed);
     for (std::size_t g = 0; g < packed.lightOfTriangle.size(); ++g)
         if (isMoving[surfaces[g].material]) packed.lightOfTriangle[g] = ~0u;
 

@@ -174,8 +174,12 @@ struct PackedScene {
     glm::vec3 lightGridOrigin{0.0f};
     float lightGridScale = 0;  ///< cells per metre
     bool lightCuts = false;
-    bool areaLights = false;        ///< some light in the table is a surface
-    bool triangleLights = false;    ///< some surface in the table is no parallelogram
+    bool areaLights = false;      ///< some light in the table is a surface
+    bool triangleLights = false;  ///< some surface in the table is no parallelogram
+    /** Lights that are sampled by the solid angle they fill (shaders/scene/solid_angle_light.glsl): 1
+     * rectangles, 2 triangles. 0 where all are too small, as seen from the scene's surfaces, for that to pay.
+     */
+    std::uint32_t solidAngles = 0;
     bool punctualLights = false;    ///< some light in the table is punctual
     bool emission = false;          ///< some surface in use emits
     bool texturedEmission = false;  ///< emission varies over some surface in use

@@ -16,6 +16,9 @@
 #include "shaders/intersection/shape.glsl"
 #include "shaders/scene/sphere_light.glsl"
 #endif
+#ifdef SOLID_ANGLES
+#include "shaders/scene/solid_angle_light.glsl"
+#endif
 #ifdef LIGHT_TABLES
 #include "shaders/scene/light_tables.glsl"
 #else
@@ -54,6 +57,12 @@ const uvec4 ONLY_LIGHT[LIGHT_TEXELS] = UNROLLED_LIGHT;
 const bool SEEN_THROUGH = HAS_ALPHA;
 #else
 const bool SEEN_THROUGH = false;
+#endif
+
+#ifdef SOLID_ANGLES
+bool hasSolidAngle(uint kind) {
+    return kind <= LIGHT_PARALLELOGRAM || kind == LIGHT_QUAD;
+}
 #endif
 
 struct LightSample {
@@ -105,6 +114,9 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
 #ifdef SHAPES
         if (kind == LIGHT_DISC) s = 0.5 + 0.5 * sqrt(u.x) * unitCircle(u.y);
 #endif
+#ifdef SOLID_ANGLES
+        const float solidAngle = hasSolidAngle(kind) ? sampleSolidAngle(p, kind == LIGHT_TRIANGLE, corner.xyz, edge1.xyz, edge2, u, s) : 0.0;
+#endif
         vec3 q = corner.xyz + edge1.xyz * s.x + edge2 * s.y;
         vec4 facing = facingOf;
 #ifdef SHAPES
@@ -126,6 +138,9 @@ LightSample sampleLight(vec3 p, int place, uint choice, uvec2 random) {
         const float towards = bothFaces ? abs(cosine) : cosine;
         const bool visible = towards > 0.0 && squared > 0.0;
         result.density = visible ? abs(strength.w) * squared / towards : 0.0;
+#ifdef SOLID_ANGLES
+        if (solidAngle > 0.0 && visible) result.density = abs(strength.w) / (uintBitsToFloat(LIGHT_ROW(first, 5).w) * solidAngle);
+#endif
 #ifdef SHAPES
         if (isSphere && visible) result.density = abs(strength.w) * sphereDensity(p, corner.xyz, radius, distance, towards);
 #endif
@@ -198,6 +213,26 @@ float lightAreaDensity(int place, int g) {
     if (row < 0) return 0.0;  // it moves, and is found by rays alone
 #endif
     return lightChance(place, row) * uintBitsToFloat(LIGHT_ROW(row * LIGHT_TEXELS, 5).w);
+}
+#endif
+#ifdef SOLID_ANGLES
+/** Density over solid angle with which sampleLight() for p takes the light that triangle g belongs to, where it does so by
+ * solid angle; else `density`, that by area. */
+float solidAngleDensity(vec3 p, int place, int g, float density) {
+    int row = 0;
+    float chance = 1.0;
+#ifdef LIGHT_TABLES
+    row = int(texelFetch(uLightOfTriangle, g).x);
+    if (row < 0) return density;
+    chance = lightChance(place, row);
+#endif
+    const int first = row * LIGHT_TEXELS;
+    const uvec4 edge2 = LIGHT_ROW(first, 2);
+    if (!hasSolidAngle(edge2.w)) return density;
+    const float solidAngle =
+        sampledSolidAngle(p, edge2.w == LIGHT_TRIANGLE, uintBitsToFloat(LIGHT_ROW(first, 0).xyz),
+                          uintBitsToFloat(LIGHT_ROW(first, 1).xyz), uintBitsToFloat(edge2.xyz));
+    return solidAngle > 0.0 ? chance / solidAngle : density;
 }
 #endif
 #if defined(LIGHT_TABLES) && defined(ENVIRONMENT_IMAGE)

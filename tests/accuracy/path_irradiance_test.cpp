@@ -1,4 +1,5 @@
 // Direct light against closed forms (truths 1.1), and the cube's table of global illumination (1.4).
+#include "passes/scene/packed_scene.hpp"
 #include "tests/accuracy/path_render.hpp"
 #include "tests/accuracy/path_scenes.hpp"
 
@@ -73,6 +74,58 @@ TEST(PathIrradiance, UnderASphere) {
         expectMean(trace(b.scene, independentOptions(16, 1), c.angle > 1.5 ? 12288 : 4096, 512),
                    c.truth / kPi, fmt::format("sphere at {:.0f} degrees", c.angle * 180 / kPi));
     }
+}
+
+/** Lambert's formula: the irradiance at the origin, facing +z, from a polygon above the horizon of
+ * radiance 1. */
+double lambertIrradiance(const std::vector<glm::vec3>& corners) {
+    glm::dvec3 sum(0);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::dvec3 a = glm::normalize(glm::dvec3(corners[i]));
+        const glm::dvec3 b = glm::normalize(glm::dvec3(corners[(i + 1) % corners.size()]));
+        const glm::dvec3 across = glm::cross(a, b);
+        sum += glm::normalize(across) * std::atan2(glm::length(across), glm::dot(a, b));
+    }
+    return 0.5 * std::abs(sum.z);
+}
+
+TEST(PathIrradiance, BesideLargeLampsBySolidAngle) {
+    // Fronts face the origin. Quadrangles are rectangles, and none hides another.
+    const std::vector<glm::vec3> ceiling = {{-2, -1, 0.25f}, {-2, 3, 0.25f}, {2, 3, 0.25f}, {2, -1, 0.25f}};
+    const std::vector<glm::vec3> screen = {
+        {-0.25f, -0.75f, 0.0625f}, {-0.25f, 0.5f, 0.0625f}, {-0.25f, 0.5f, 1.0f}, {-0.25f, -0.75f, 1.0f}};
+    const std::vector<glm::vec3> strip = {
+        {-3, 0.25f, 0.125f}, {2, 0.25f, 0.125f}, {2, 0.25f, 0.25f}, {-3, 0.25f, 0.25f}};
+    const std::vector<glm::vec3> bar = {
+        {-0.125f, 0.5f, 0.125f}, {0.25f, 0.5f, 0.125f}, {0.25f, 0.5f, 1}, {-0.125f, 0.5f, 1}};
+    const std::vector<glm::vec3> sail = {{0.5f, -1, 0.125f}, {0.25f, 0, 1.5f}, {0.75f, 1.25f, 0.0625f}};
+    struct Case {
+        std::vector<std::vector<glm::vec3>> lamps;
+        std::uint32_t solidAngles;
+    };
+    for (const Case& c : {Case{{ceiling}, 1}, Case{{screen}, 1}, Case{{strip}, 1}, Case{{sail}, 2},
+                          Case{{screen, bar}, 1}, Case{{screen, sail, bar}, 3}}) {
+        SceneBuilder b;
+        addReceiver(b, {-0.05f, -1, 0.2f});
+        double truth = 0;
+        for (const std::vector<glm::vec3>& lamp : c.lamps) {
+            const int glow = b.material(glm::vec3(0), glm::vec3(1), true);
+            if (lamp.size() == 4)
+                b.quad(lamp[0], lamp[1], lamp[2], lamp[3], glow);
+            else
+                b.triangles(lamp, glow);
+            truth += lambertIrradiance(lamp);
+        }
+        PathTraceOptions options = independentOptions(16, 1);
+        options.lights = LightChoice::Adaptive;
+        EXPECT_EQ(packScene(b.scene, PathTracer::packOptions(b.scene, options)).solidAngles, c.solidAngles);
+        expectMean(trace(b.scene, options, 1024), truth / kPi, fmt::format("{} large lamps", c.lamps.size()));
+    }
+}
+
+TEST(PathIrradiance, SmallLampsAreNotSampledBySolidAngle) {
+    const Scene scene = load("sample:cornell");
+    EXPECT_EQ(packScene(scene, PathTracer::packOptions(scene, {})).solidAngles, 0u);
 }
 
 /** The unit cube whose floor (z = 0) emits and reflects nothing; the rest reflects half. */
