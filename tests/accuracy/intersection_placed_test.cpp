@@ -37,7 +37,7 @@ Scene crowd(int copies, const glm::vec3& centre, float size, bool normals) {
     scene.nodes.clear();
     scene.roots.clear();
     if (normals)
-        for (Mesh& mesh : scene.meshes)
+        for (auto& mesh : scene.meshes)
             for (Primitive& p : mesh.primitives)
                 for (const glm::vec3& at : p.positions)
                     p.normals.push_back(glm::normalize(at + glm::vec3(0, 0.01f, 0)));
