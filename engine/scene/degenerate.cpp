@@ -1,13 +1,11 @@
 #include "engine/scene/degenerate.hpp"
 
 #include "engine/scene/notes.hpp"
+#include "engine/scene/parallel.hpp"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <cmath>
-#include <functional>
 
 namespace helio {
 namespace {
@@ -27,14 +25,7 @@ bool hasArea(const Primitive& primitive, std::size_t triangle) {
 }
 
 std::size_t trianglesWithoutArea(const Primitive& primitive) {
-    using Range = tbb::blocked_range<std::size_t>;
-    return tbb::parallel_reduce(
-        Range(0, primitive.indices.size() / 3, 16384), std::size_t(0),
-        [&](const Range& range, std::size_t count) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) count += hasArea(primitive, t) ? 0 : 1;
-            return count;
-        },
-        std::plus<>());
+    return countWhere(primitive.indices.size() / 3, [&](std::size_t t) { return !hasArea(primitive, t); });
 }
 
 }  // namespace

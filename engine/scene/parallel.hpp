@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 
 namespace helio {
 
@@ -31,6 +32,18 @@ std::size_t firstWhere(std::size_t count, Predicate&& predicate) {
             return first;
         },
         [](std::size_t left, std::size_t right) { return std::min(left, right); });
+}
+
+/** How many i below `count` predicate(i) holds for. */
+template <class Predicate>
+std::size_t countWhere(std::size_t count, Predicate&& predicate) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count, kBlock), std::size_t(0),
+        [&](const auto& range, std::size_t sum) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) sum += predicate(i) ? 1 : 0;
+            return sum;
+        },
+        std::plus<>());
 }
 
 }  // namespace helio

@@ -10,6 +10,8 @@ namespace {
 constexpr std::uint32_t kGroupSize = 64;
 /** Rays of a workgroup: enough that lanes seldom wait for a run's last rays, few enough for even halves. */
 constexpr std::uint32_t kRaysPerGroup = 32 * kGroupSize;
+
+/** The kernel that walks the accelerator the scene is packed with. */
 Kernel kernelFor(const PackedScene& packed) {
     if (packed.accelerator != AcceleratorKind::Bvh)
         return compileVariant(shaders::intersectEach, acceleratorVariant(packed.accelerator));
@@ -35,14 +37,15 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     assert(packed.nodeCount > 0 && capacity > 0 && capacity <= (1u << 23));
     Graph graph(device);
     const Buffer counters = graph.import(counters_);
-    SpecConstants spec = {{"ANY", question == RayQuestion::Any},
-                          {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}};
     std::vector<Binding> placed;
     if (!packed.placed.empty()) {
         placed_ = makeBuffer(device, "intersect.placed", packed.placed);
         placed.push_back({"uPlaced", graph.import(*placed_)});
     }
-    graph.compute("intersect", kernelFor(packed), {.spec = spec})
+    graph
+        .compute("intersect", kernelFor(packed),
+                 {.spec = {{"ANY", question == RayQuestion::Any},
+                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}}})
         .reads(placed)
         .reads({{"uTriangles", graph.import(triangles_)},
                 {"uNodes", graph.import(nodes_)},

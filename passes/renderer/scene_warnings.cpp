@@ -1,15 +1,13 @@
 #include "passes/renderer/scene_warnings.hpp"
 
+#include "engine/scene/parallel.hpp"
 #include "passes/scene/material_layout.hpp"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 
 namespace helio {
@@ -59,14 +57,7 @@ bool isSliver(const Primitive& primitive, std::size_t triangle) {
 }
 
 std::size_t sliversOf(const Primitive& primitive) {
-    using Range = tbb::blocked_range<std::size_t>;
-    return tbb::parallel_reduce(
-        Range(0, primitive.indices.size() / 3, 16384), std::size_t(0),
-        [&](const Range& range, std::size_t count) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) count += isSliver(primitive, t) ? 1 : 0;
-            return count;
-        },
-        std::plus<>());
+    return countWhere(primitive.indices.size() / 3, [&](std::size_t t) { return isSliver(primitive, t); });
 }
 
 /** Largest extent of a mesh along an axis, shapes left out. */

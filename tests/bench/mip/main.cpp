@@ -7,6 +7,7 @@
 #include "engine/gpu/timestamps.hpp"
 #include "passes/mip/mip_chain.hpp"
 #include "tests/bench/raster/images.hpp"
+#include "tests/bench/timing.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/error.hpp>
@@ -27,11 +28,6 @@ namespace {
 
 // Flags of a packed texture, as shaders/scene/textures.glsl reads them.
 constexpr std::uint32_t kFloatTexture = 1u << 5, kMipmapped = 1u << 6;
-
-double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-    return values[values.size() / 2];
-}
 
 /** The driver's way: each level by a linear blit from the one above. */
 class BlitChain {

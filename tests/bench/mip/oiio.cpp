@@ -5,10 +5,11 @@
  * Prints a Markdown table: milliseconds on the wall, CPU milliseconds, and the relMSE of all levels against
  * means in double precision.
  */
+#include "tests/bench/timing.hpp"
+
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,17 +21,8 @@
 
 namespace {
 
-double cpuSeconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-    return values[values.size() / 2];
-}
+using helio::bench::cpuSeconds;
+using helio::bench::median;
 
 std::vector<OIIO::ImageBuf> chain(const OIIO::ImageBuf& base, bool isFloat) {
     std::vector<OIIO::ImageBuf> levels;

@@ -3,20 +3,11 @@
 #include "passes/film/film.hpp"
 #include "passes/pathtrace/path_tracer.hpp"
 #include "passes/scene/device_scene.hpp"
-
-#include <sys/resource.h>
+#include "tests/bench/timing.hpp"
 
 #include <vector>
 
 namespace helio::test {
-
-/** User and system time of the process. */
-inline double cpuSeconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /** A tracer that goes on from run to run. */
 class Contender {
@@ -30,10 +21,10 @@ public:
     /** CPU seconds of the next samples. */
     double run(std::uint32_t samples) {
         end_ += samples;
-        const double start = cpuSeconds();
+        const double start = bench::cpuSeconds();
         while (!tracer_.advance(end_)) {
         }
-        return cpuSeconds() - start;
+        return bench::cpuSeconds() - start;
     }
     /** What is traced with. */
     auto kernel() const { return tracer_.traceKernel(); }

@@ -32,9 +32,9 @@ struct Shader {
         plan.wait(plan.execute());  // compiles
     }
     double run(std::uint32_t runs) {
-        const double start = cpuSeconds();
+        const double start = bench::cpuSeconds();
         for (std::uint32_t k = 0; k < runs; ++k) plan.wait(plan.execute());
-        return cpuSeconds() - start;
+        return bench::cpuSeconds() - start;
     }
     bool showsTheSameAs(Shader& other) {
         const Execution a = plan.execute(), b = other.plan.execute();

@@ -9,13 +9,13 @@
 #include "passes/raster/raster_pipeline.hpp"
 #include "tests/bench/raster/graphics_rasterizer.hpp"
 #include "tests/bench/raster/scenes.hpp"
+#include "tests/bench/timing.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/error.hpp>
 #include <heliograph/graph.hpp>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -28,20 +28,6 @@ namespace helio::bench {
 namespace {
 
 constexpr std::array<std::uint32_t, 2> kSize = {1280, 720};
-
-/** User and system time of the process: of a CPU device's threads too, and steadier than the clock on a
- * machine with other work. */
-double cpuSeconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-    return values[values.size() / 2];
-}
 
 /** The compute rasterizer's plan into a buffer that stays on the device. */
 struct ComputeRasterizer {

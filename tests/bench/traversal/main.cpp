@@ -8,9 +8,10 @@
  * number of triangles, from 10^2 to MAX.
  */
 #include "passes/intersect/ray_intersector.hpp"
+#include "tests/bench/timing.hpp"
+#include "tests/bench/traversal/rays.hpp"
 #include "tests/support/embree_scene.hpp"
 #include "tests/support/meshes.hpp"
-#include "tests/bench/traversal/rays.hpp"
 
 #include <heliograph/device.hpp>
 #include <heliograph/error.hpp>
@@ -46,12 +47,6 @@ Cost costOf(const auto& work) {
     work();
     return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
             double(std::clock() - cpu) / CLOCKS_PER_SEC};
-}
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    const std::size_t n = values.size();
-    return 0.5 * (values[n / 2] + values[(n - 1) / 2]);
 }
 
 struct Options {
