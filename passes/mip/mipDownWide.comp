@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "passes/mip/mip_wide.glsl"
+#include "passes/mip/mip_means.glsl"
 
 vec4 finerTexel(int index) { return imageLoad(uMips, index); }
 

@@ -1,7 +1,6 @@
 #include "passes/mip/mip_chain.hpp"
 
 #include <heliograph/error.hpp>
-#include <heliograph/image.hpp>
 
 #include <fmt/format.h>
 #include <heliograph_kernels/mip.hpp>
@@ -54,18 +53,13 @@ glm::ivec2 invocations(const MipLayout::Wide& wide) {
     return wide.second >= 0 ? wide.size / 2 : wide.size;
 }
 
-/** What the wide kernels are specialized for: TWO_LEVELS, WHOLE_GROUPS, TEXELS. */
-using WideKind = std::tuple<bool, bool, std::int32_t>;
+/** What the wide kernels are specialized for: TWO_LEVELS, WHOLE_GROUPS, TEXELS, and whether the base's texels
+ * of 8 bits are read by fours. */
+using WideKind = std::tuple<bool, bool, std::int32_t, bool>;
 WideKind wideKind(std::uint32_t flags, const MipLayout::Wide& wide, bool base) {
     const std::int32_t texels = (flags & kFloat) != 0 ? 2 : (flags & kLinear) != 0 ? 1 : 0;
-    const bool whole = invocations(wide) % kWideGroup == glm::ivec2(0);
-    return {wide.second >= 0, whole, base ? texels : 0};
-}
-
-std::vector<float> decodedCodes() {
-    std::vector<float> values;
-    for (int code = 0; code < 256; ++code) values.push_back(float(srgbDecode(code / 255.0)));
-    return values;
+    const bool whole = invocations(wide) % kWideGroup == glm::ivec2(0), two = wide.second >= 0;
+    return {two, whole, base ? texels : 0, base && two && texels != 2 && wide.source % 4 == 0};
 }
 
 }  // namespace
@@ -142,7 +136,6 @@ MipChains::MipChains(Device& device, std::span<const glm::uvec4> textures)
     : layout_(textures),
       table_(makeBuffer(device, "mip.table", atLeastOne(layout_.table))),
       work_(makeBuffer(device, "mip.work", atLeastOne(layout_.work))),
-      decoded_(makeBuffer(device, "mip.decoded", decodedCodes())),
       mips_(device, "mip.levels", std::max<std::uint64_t>(layout_.texels, 1) * 16) {}
 
 void MipChains::declareWide(Graph& graph, const std::vector<Binding>& textures, std::size_t level,
@@ -151,15 +144,20 @@ void MipChains::declareWide(Graph& graph, const std::vector<Binding>& textures, 
     for (const auto& [flags, wide] : layout_.levels[level].wide)
         kinds[wideKind(flags, wide, level == 0)].push_back(wide);
     for (const auto& [kind, list] : kinds) {
-        const auto [two, whole, texels] = kind;
+        const auto [two, whole, texels, packed] = kind;
         SpecConstants spec = {{"TWO_LEVELS", two}, {"WHOLE_GROUPS", whole}};
         if (level == 0) spec["TEXELS"] = texels;
         Pass pass = graph.compute(level == 0 ? "mip.base" : fmt::format("mip.level{}", level + 1),
-                                  level == 0 ? shaders::mipBaseWide : shaders::mipDownWide, {.spec = spec});
+                                  level > 0 ? shaders::mipDownWide
+                                  : packed  ? shaders::mipBasePacked
+                                            : shaders::mipBaseWide,
+                                  {.spec = spec});
         if (level == 0)
-            for (const Binding& binding : textures)
-                if (binding.name != "uTextures") pass.reads({binding});
-        if (level == 0) pass.reads({{"uDecoded", graph.import(decoded_), Format::R32F}});
+            for (Binding binding : textures) {
+                if (binding.name == "uTextures" || (packed && binding.name != "uTexels8")) continue;
+                if (packed) binding.view = Format::RGBA32UI;
+                pass.reads({binding});
+            }
         pass.modifies({{"uMips", mips, Format::RGBA32F}}).record([list](Commands& c) {
             for (const MipLayout::Wide& wide : list) {
                 // A dispatch has at most 65,535 workgroups of 8 rows.

@@ -62,7 +62,7 @@ private:
                      Buffer mips);
 
     MipLayout layout_;
-    DeviceBuffer table_, work_, decoded_, mips_;
+    DeviceBuffer table_, work_, mips_;
 };
 
 }  // namespace helio
