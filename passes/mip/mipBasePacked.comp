@@ -2,10 +2,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes/mip/mip_wide.glsl"
+#include "passes/mip/normal_texels.glsl"
 #include "passes/mip/srgb_codes.glsl"
 
 layout(set = 0, binding = 28, rgba32ui) uniform readonly uimageBuffer uTexels8;  ///< four texels of a row each
 layout(constant_id = 124) const int TEXELS = 0;  ///< 0: sRGB; 1: data
+layout(constant_id = 126) const bool NORMALS = false;
 
 /// Colours of four texels, in columns.
 mat4 decode(uvec4 bits) {
@@ -13,7 +15,11 @@ mat4 decode(uvec4 bits) {
     uvec4 red = bits & 255u, green = bits >> 8 & 255u, blue = bits >> 16 & 255u;
     vec4 alpha = vec4(bits >> 24) * unit;
     if (TEXELS == 0) return transpose(mat4(linearLight(red), linearLight(green), linearLight(blue), alpha));
-    return transpose(mat4(vec4(red) * unit, vec4(green) * unit, vec4(blue) * unit, alpha));
+    mat4 texels = transpose(mat4(vec4(red) * unit, vec4(green) * unit, vec4(blue) * unit, alpha));
+    if (NORMALS)
+        texels = mat4(unitNormalTexel(texels[0]), unitNormalTexel(texels[1]), unitNormalTexel(texels[2]),
+                      unitNormalTexel(texels[3]));
+    return texels;
 }
 
 mat4 row(int first) { return decode(imageLoad(uTexels8, first)); }

@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint32_t kFloat = 1u << 5;
 constexpr std::uint32_t kMipmaps = 1u << 6;
 constexpr std::uint32_t kLinear = 1u << 7;
+constexpr std::uint32_t kNormals = 1u << 8;
 
 /** A level that fills a workgroup's row and has so many texels is made by a dispatch of its own. */
 constexpr std::size_t kNone = ~std::size_t(0);
@@ -53,13 +54,14 @@ glm::ivec2 invocations(const MipLayout::Wide& wide) {
     return wide.second >= 0 ? wide.size / 2 : wide.size;
 }
 
-/** What the wide kernels are specialized for: TWO_LEVELS, WHOLE_GROUPS, TEXELS, and whether the base's texels
- * of 8 bits are read by fours. */
-using WideKind = std::tuple<bool, bool, std::int32_t, bool>;
+/** What the wide kernels are specialized for: TWO_LEVELS, WHOLE_GROUPS, TEXELS, NORMALS, and whether the
+ * base's texels of 8 bits are read by fours. */
+using WideKind = std::tuple<bool, bool, std::int32_t, bool, bool>;
 WideKind wideKind(std::uint32_t flags, const MipLayout::Wide& wide, bool base) {
     const std::int32_t texels = (flags & kFloat) != 0 ? 2 : (flags & kLinear) != 0 ? 1 : 0;
     const bool whole = invocations(wide) % kWideGroup == glm::ivec2(0), two = wide.second >= 0;
-    return {two, whole, base ? texels : 0, base && two && texels != 2 && wide.source % 4 == 0};
+    return {two, whole, base ? texels : 0, base && (flags & kNormals) != 0,
+            base && two && texels != 2 && wide.source % 4 == 0};
 }
 
 }  // namespace
@@ -69,8 +71,8 @@ std::uint32_t mipLevelCount(std::uint32_t width, std::uint32_t height) {
 }
 
 MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
-    // Chains of distinct texels: (stored as floats, offset) -> first texture that uses them.
-    std::map<std::pair<bool, std::uint32_t>, std::uint32_t> chains;
+    // Chains of distinct texels: (how they are read, offset) -> first texture that uses them.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> chains;
     struct Chain {
         std::uint32_t texture;
         Size size;
@@ -83,7 +85,8 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
         const glm::uvec4& header = textures[t];
         const std::uint32_t count = mipLevelCount(header.y, header.z);
         if ((header.w & kMipmaps) == 0 || count < 2) continue;
-        const auto [place, isNew] = chains.try_emplace({(header.w & kFloat) != 0, header.x}, t);
+        const auto [place, isNew] =
+            chains.try_emplace({header.w & (kFloat | kLinear | kNormals), header.x}, t);
         if (!isNew) {
             table[t] = table[place->second];
             continue;
@@ -144,9 +147,10 @@ void MipChains::declareWide(Graph& graph, const std::vector<Binding>& textures, 
     for (const auto& [flags, wide] : layout_.levels[level].wide)
         kinds[wideKind(flags, wide, level == 0)].push_back(wide);
     for (const auto& [kind, list] : kinds) {
-        const auto [two, whole, texels, packed] = kind;
+        const auto [two, whole, texels, normals, packed] = kind;
         SpecConstants spec = {{"TWO_LEVELS", two}, {"WHOLE_GROUPS", whole}};
         if (level == 0) spec["TEXELS"] = texels;
+        if (level == 0) spec["NORMALS"] = normals;
         Pass pass = graph.compute(level == 0 ? "mip.base" : fmt::format("mip.level{}", level + 1),
                                   level > 0 ? shaders::mipDownWide
                                   : packed  ? shaders::mipBasePacked

@@ -33,6 +33,7 @@ constexpr std::uint32_t kNearest = 1u << 4;
 constexpr std::uint32_t kFloat = 1u << 5;
 constexpr std::uint32_t kMipmaps = 1u << 6;
 constexpr std::uint32_t kLinear = 1u << 7;
+constexpr std::uint32_t kNormals = 1u << 8;
 
 // Flags of a packed material, as shaders/scene/materials.glsl reads them.
 constexpr std::uint32_t kDoubleSided = 1u << 0;
@@ -57,13 +58,13 @@ public:
     }
 
     /** Index into PackedScene::textures, or -1. What is not emission lies between 0 and 1. */
-    int add(const TextureUse& use, bool color, bool emission) {
+    int add(const TextureUse& use, bool color, bool emission, bool normals) {
         if (!use) return -1;
         if (use.texture >= int(scene_.textures.size()))
             throw InputError(scene_.name, "", fmt::format("texture {} does not exist", use.texture),
                              "name one of the scene's textures");
         const auto [place, isNew] =
-            packedTexture_.try_emplace({use.texture, color, emission}, int(packed_.textures.size()));
+            packedTexture_.try_emplace({use.texture, color, emission, normals}, int(packed_.textures.size()));
         if (!isNew) return place->second;
         const Texture& texture = scene_.textures[std::size_t(use.texture)];
         if (texture.image < 0 || texture.image >= int(scene_.images.size()))
@@ -76,7 +77,9 @@ public:
         std::uint32_t flags = std::uint32_t(texture.wrapU) | std::uint32_t(texture.wrapV) << kWrapVShift;
         if (texture.magFilter == Filter::Nearest) flags |= kNearest;
         if (!eightBits) flags |= kFloat;
-        if (texture.useMipmaps && color) flags |= kMipmaps;
+        if (texture.useMipmaps && (color || normals)) flags |= kMipmaps;
+        if (normals) flags |= kNormals;
+        packed_.normalLevels |= normals && texture.useMipmaps;
         if (!color && eightBits) flags |= kLinear;
         packed_.linearTextures |= !color && eightBits;
         packed_.textures.emplace_back(addImage(texture.image, color || !sixteenBits, emission), image.width,
@@ -156,7 +159,7 @@ private:
     const Scene& scene_;
     PackedScene& packed_;
     float brightest_ = 0x1p100f;
-    std::map<std::tuple<int, bool, bool>, int> packedTexture_;
+    std::map<std::tuple<int, bool, bool, bool>, int> packedTexture_;
     std::map<std::tuple<int, bool, bool>, std::uint32_t> imageOffset_;
 };
 
@@ -267,7 +270,9 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             const std::array<int, 2> sets = texcoordSets(material, packed.occlusionTextures);
             for (const SampledTexture& texture : sampledTextures(material, packed.occlusionTextures)) {
                 const int index =
-                    textures.add(*texture.use, texture.color, texture.use == &material.emissiveTexture);
+                    textures.add(*texture.use, texture.color, texture.use == &material.emissiveTexture,
+                                 texture.use == &material.normalTexture ||
+                                     texture.use == &material.clearcoatNormalTexture);
                 rows[texture.row] = transformRow(*texture.use, 0, std::uint32_t(index));
                 rows[texture.row + 1] = transformRow(*texture.use, 1, texcoordSlot(sets, *texture.use));
             }

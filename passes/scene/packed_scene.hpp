@@ -188,6 +188,7 @@ struct PackedScene {
     bool alphaMasks = false, alphaBlends = false;  ///< modes of materials in use
     bool solidTextures = false;                    ///< some base colour varies over space
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
+    bool normalLevels = false;           ///< some normal map asks for mip levels
     std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
     bool roughFacets = false;            ///< some material in use has microfacets of a width
     bool tiltedLobes =

@@ -201,6 +201,7 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
         common.spec.merge(scene_.constants(
             {"ALBEDO_TABLES", "HAS_ROUGH_FACETS", "HAS_TILTED_LOBES", "HAS_LINEAR_TEXTURES"}));
     }
+    if (scene_.info().normalLevels && mips_.needed()) common.materials["FOOTPRINT_NORMALS"] = "1";
     if (scene_.info().occlusionTextures) {
         common.model["OCCLUSION"] = "1";
         common.spec.merge(scene_.constants({"HAS_LINEAR_TEXTURES"}));

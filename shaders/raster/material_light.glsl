@@ -19,6 +19,14 @@ SurfacePoint rasterPoint(Triangle source, Surface surface, vec3 shading) {
     return s;
 }
 
+#ifdef FOOTPRINT_NORMALS
+/// Widths of facets that lie about normals whose slopes vary: a width's square is twice the variance of a slope
+/// (Beckmann's exactly), and variances add.
+vec2 widened(vec2 alpha, float variance) {
+    return variance > 0.0 ? resolvedAlpha(min(sqrt(alpha * alpha + 2.0 * variance), 1.0)) : alpha;
+}
+#endif
+
 /// What the material makes of a view along the unit vector -toEye. `color` is the base colour, filtered.
 SurfaceBsdf rasterBsdf(Triangle source, Surface surface, vec3 shading, vec3 color) {
     SurfacePoint s = rasterPoint(source, surface, shading);
@@ -27,6 +35,13 @@ SurfaceBsdf rasterBsdf(Triangle source, Surface surface, vec3 shading, vec3 colo
     bsdf.albedo = color;
     bsdf.gltf.baseColor = min(color, vec3(1.0));
     if (HAS_MODELS) bsdf.other.color = min(color, vec3(1.0));
+#ifdef FOOTPRINT_NORMALS
+    if (HAS_ROUGH_FACETS) {
+        if (HAS_GLTF) bsdf.gltf.alpha = widened(bsdf.gltf.alpha, mapVariance.x);
+        if (HAS_GLTF && HAS_CLEARCOAT) bsdf.gltf.coatAlpha = widened(vec2(bsdf.gltf.coatAlpha), mapVariance.y).x;
+        if (HAS_MODELS) bsdf.other.facets.alpha = widened(bsdf.other.facets.alpha, mapVariance.x);
+    }
+#endif
     return bsdf;
 }
 

@@ -79,7 +79,12 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     Surface surface = surfaceAt(source, pixel);
 
     vec4 uv = vec4(0.0), dx = vec4(0.0), dy = vec4(0.0);
-    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES || HAS_OCCLUSION) footprint(g, surface, uv, dx, dy);
+    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES || HAS_OCCLUSION || HAS_FOOTPRINT_NORMALS)
+        footprint(g, surface, uv, dx, dy);
+#ifdef FOOTPRINT_NORMALS
+    pixelX = dx;
+    pixelY = dy;
+#endif
     vec4 base = uintBitsToFloat(texelFetch(uMaterials, source.material * MATERIAL_TEXELS));
     if (HAS_COLORS) base *= vertexColor(g, surface.b);
     if (HAS_BASE_TEXTURES) base *= filteredMaterialTexture(source.material, 3, uv, dx, dy);

@@ -107,7 +107,11 @@ mat3 tangentFrame(int g, vec3 b, vec3 normal) {
 
 /** Normal of a map, in the frame's coordinates: unit. */
 vec3 mappedNormal(int material, int row, vec4 uv, float scale) {
+#ifdef FOOTPRINT_NORMALS
+    const vec3 n = footprintNormal(material, row, uv, scale);
+#else
     const vec3 n = materialTexture(material, row, uv).xyz * 2.0 - 1.0;
+#endif
     const vec3 scaled = vec3(n.xy * scale, n.z);
     return int(texelFetch(uMaterials, material * MATERIAL_TEXELS + row).w) < 0 ? vec3(0.0, 0.0, 1.0) : normalizeSafe(scaled, vec3(0.0, 0.0, 1.0));
 }

@@ -14,6 +14,7 @@ const uint TEXTURE_NEAREST = 1u << 4;
 const uint TEXTURE_FLOAT = 1u << 5;
 const uint TEXTURE_LINEAR = 1u << 7;   ///< 8-bit texels hold data, which is not sRGB-encoded
 const uint TEXTURE_MIPMAPS = 1u << 6;  ///< the rasterizer filters it over mip levels
+const uint TEXTURE_NORMALS = 1u << 8;  ///< of unit vectors (v + 1) / 2: its levels are means of these, so that they are shorter where they vary
 
 /** x^2.4 for 0 <= x <= 1 by powers of square roots: 2.4 = 2 + 0.4, and x^0.4 = (x^2)^(1/5) by Newton's
  * method from a quadratic guess in x^(1/4). Relative error below 3e-7, none at 0 and 1. */

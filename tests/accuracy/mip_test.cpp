@@ -20,7 +20,8 @@
 namespace helio::test {
 namespace {
 
-constexpr std::uint32_t kFloatTexture = 1u << 5, kMipmapped = 1u << 6, kLinearTexture = 1u << 7;
+constexpr std::uint32_t kFloatTexture = 1u << 5, kMipmapped = 1u << 6, kLinearTexture = 1u << 7,
+                        kNormalTexture = 1u << 8;
 
 struct Level {
     std::uint32_t width, height;
@@ -61,7 +62,7 @@ struct Packed {
     std::vector<Level> bases;
 
     void add(std::uint32_t width, std::uint32_t height, bool floats, std::mt19937& random,
-             bool linear = false) {
+             bool linear = false, bool normals = false) {
         Level base{width, height, {}};
         const std::size_t offset = floats ? texelsFloat.size() : texels8.size();
         for (std::uint32_t i = 0; i < width * height; ++i) {
@@ -70,15 +71,22 @@ struct Packed {
                                          0.5f);
                 base.texels.emplace_back(texelsFloat.back());
             } else {
-                const std::uint32_t word = std::uint32_t(random());
+                // Normals point outwards.
+                const std::uint32_t word = std::uint32_t(random()) | (normals ? 0xc00000u : 0u);
                 texels8.push_back(word);
                 const auto channel = [&](int k) { return (word >> (8 * k) & 255u) / 255.0; };
                 const auto color = [&](int k) { return linear ? channel(k) : srgbDecode(channel(k)); };
                 base.texels.emplace_back(color(0), color(1), color(2), channel(3));
             }
         }
+        if (normals)
+            for (glm::dvec4& t : base.texels) {
+                const glm::dvec3 n = glm::dvec3(t) * 2.0 - 1.0;
+                t = glm::dvec4(0.5 * glm::normalize(n) + 0.5, t.w);
+            }
         headers.emplace_back(std::uint32_t(offset), width, height,
-                             kMipmapped | (floats ? kFloatTexture : 0u) | (linear ? kLinearTexture : 0u));
+                             kMipmapped | (floats ? kFloatTexture : 0u) | (linear ? kLinearTexture : 0u) |
+                                 (normals ? kNormalTexture : 0u));
         bases.push_back(std::move(base));
     }
 };
@@ -119,12 +127,14 @@ TEST(MipChain, EveryTexelAndMeanOfEverySize) {
     Packed packed;
     // The first two are read by fours: they begin at multiples of 4 texels.
     const std::array<std::uint32_t, 2> sizes[] = {
-        {512, 256}, {260, 132}, {64, 64},   {1, 37}, {37, 1}, {17, 33},   {2, 5},     {3, 3},
+        {512, 256}, {516, 132}, {64, 64},   {1, 37}, {37, 1}, {17, 33},   {2, 5},     {3, 3},
         {1, 1},     {128, 7},   {255, 101}, {6, 10}, {1, 64}, {512, 256}, {300, 301}, {515, 258}};
     for (const auto& [width, height] : sizes) {
         packed.add(width, height, false, random);
         packed.add(width, height, true, random);
         packed.add(width, height, false, random, true);
+        packed.add(width, height, false, random, true, true);
+        packed.add(width, height, true, random, false, true);
     }
     MipChains chains(device(), packed.headers);
     const auto values = makeMips(packed, chains);
@@ -144,7 +154,9 @@ TEST(MipChain, EveryTexelAndMeanOfEverySize) {
             for (std::size_t i = 0; i < level.texels.size(); ++i) {
                 made.texels.emplace_back(values[place.x + i]);
                 for (int c = 0; c < 4; ++c) {
-                    const double scale = std::max(1e-3, level.texels[i][c]);
+                    // A vector's error is relative to its length.
+                    const bool vector = (packed.headers[t].w & kNormalTexture) != 0 && c < 3;
+                    const double scale = std::max(vector ? 1.0 : 1e-3, level.texels[i][c]);
                     worstTexel =
                         std::max(worstTexel, std::abs(made.texels[i][c] - level.texels[i][c]) / scale / k);
                 }

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <tuple>
 
 namespace helio::test {
@@ -277,6 +278,72 @@ TEST(Displacement, SharedCornersStayShared) {
         i += std::size_t(count);
     }
     EXPECT_EQ(single, 4u * 3 * 5);  // the rim
+}
+
+/** Mean radiance of a glossy square under one light whose normal map's slopes vary by `sigma` each way, seen
+ * with so many texels a pixel. */
+double glossUnderLight(std::uint32_t side, double sigma, bool beckmann, double alpha, double lightAngle) {
+    constexpr std::uint32_t texels = 256;
+    std::mt19937 random(5);
+    std::normal_distribution<double> slope(0.0, 1.0);
+    std::vector<float> map;
+    for (std::uint32_t i = 0; i < texels * texels; ++i) {
+        const double u = slope(random), v = slope(random);
+        const glm::dvec3 n = 0.5 * glm::normalize(glm::dvec3(-sigma * u, -sigma * v, 1)) + 0.5;
+        map.insert(map.end(), {float(n.x), float(n.y), float(n.z), 1.0f});
+    }
+    Scene scene;
+    scene.images.push_back({"normals", texels, texels, std::move(map)});
+    Texture texture;
+    texture.image = 0;
+    scene.textures.push_back(texture);
+    Material metal;
+    metal.scattering = Scattering{};
+    metal.scattering->model = Scattering::Model::Conductor;
+    metal.scattering->n = glm::vec3(0.2f);
+    metal.scattering->k = glm::vec3(3.9f);
+    metal.scattering->alpha = glm::vec2(float(alpha));
+    metal.scattering->beckmann = beckmann;
+    metal.normalTexture.texture = 0;
+    Primitive square;
+    square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    square.texcoords = {{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
+    square.indices = {0, 1, 2, 0, 2, 3};
+    addPrimitive(scene, square, metal);
+    PunctualLight light;
+    light.type = PunctualLight::Type::Directional;
+    const glm::dvec3 z(std::sin(lightAngle), 0, std::cos(lightAngle)), x(z.z, 0, -z.x);
+    addLight(scene, light,
+             glm::dmat4(glm::dvec4(x, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(z, 0), glm::dvec4(0, 0, 0, 1)));
+    const ShadedImage image = shade(scene, frontView(side, 1));
+    double sum = 0;
+    for (const glm::vec4& color : image.color) sum += double(color.r);
+    return sum / double(image.color.size());
+}
+
+TEST(NormalMips, FarSurfacesReflectTheMeanOfWhatTheirNormalsReflect) {
+    // Beckmann's slopes are Gaussian, and so are the map's: their sum's are too, of the variance that the
+    // levels find. GGX's are not, and what Toksvig's widening makes of them is a fit.
+    std::printf(
+        "             | facets | width | slopes | light at | of the mean over texels | of a flat map's |\n");
+    for (const bool beckmann : {true, false})
+        for (const double alpha : {0.1, 0.25})
+            for (const double sigma : {0.1, 0.2}) {
+                double errors = 0, flatErrors = 0;
+                for (const double angle : {0.0, 0.3, 0.6}) {
+                    const double near = glossUnderLight(256, sigma, beckmann, alpha, angle),
+                                 far = glossUnderLight(8, sigma, beckmann, alpha, angle),
+                                 flat = glossUnderLight(8, 0, beckmann, alpha, angle);
+                    errors += (far - near) * (far - near);
+                    flatErrors += (flat - near) * (flat - near);
+                    std::printf("             | %s | %.2f | %.1f | %.1f | %.3f | %.3f |\n",
+                                beckmann ? "Beckmann" : "GGX", alpha, sigma, angle, far / near, flat / near);
+                    if (beckmann) {
+                        EXPECT_NEAR(far / near, 1, 0.1);
+                    }
+                }
+                EXPECT_LT(errors, 0.1 * flatErrors);
+            }
 }
 
 TEST(Displacement, RefusesWhatItCannotMove) {
