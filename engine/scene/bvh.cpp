@@ -58,7 +58,7 @@ void gather(const bvh::BinaryTree& tree, std::uint32_t index, std::uint32_t firs
     const std::size_t forLeft = tree.cuts(index)[slots];
     const std::uint32_t left = tree.left(index), right = tree.node(index).right;
     gather(tree, left, first, forLeft, wide);
-    gather(tree, right, first + tree.node(left).count, slots - forLeft, wide);
+    gather(tree, right, tree.rightFirst(index, first), slots - forLeft, wide);
 }
 
 /** Gives every child the free slot whose octant it lies towards most, best pair first. */

@@ -48,14 +48,17 @@ static_assert(sizeof(BvhNode) == 80);
 struct BvhOptions {
     static constexpr int kMaxBins = 32;
     int bins = 24;              ///< of the binned split, 8 to kMaxBins; nodes of few triangles take fewer
-    double triangleCost = 0.3;  ///< of a triangle test, in visits of a node
+    double triangleCost = 0.6;  ///< of a triangle test, in visits of a node
     bool parallel = true;       ///< the result does not depend on it
+    /** Places in leaves that spatial splits may add (engine/scene/bvh_splits.hpp), in parts of the triangles;
+     * 0: every triangle is in one leaf. Corners must be the triangles' own, not those of boxes. */
+    double spatialSplits = 0;
 };
 
 struct Bvh {
     static constexpr int kMaxLeafTriangles = 3;
     std::vector<BvhNode> nodes;        ///< [0] is the root; empty without triangles
-    std::vector<std::uint32_t> order;  ///< triangle at each place; a permutation
+    std::vector<std::uint32_t> order;  ///< triangle at each place; a permutation without spatial splits
     std::uint32_t depth = 0;           ///< levels of nodes
     std::uint32_t usedNodes = 0;       ///< reachable ones
     /** Surface area heuristic: expected visits of nodes of a line that meets the root's box, each triangle
@@ -64,11 +67,12 @@ struct Bvh {
 };
 
 /** Builds the tree of positions.size() / 3 triangles (corners in threes, finite). Triangles without area are
- * kept; every triangle is in exactly one leaf. Same input, same result. */
+ * kept; every triangle is in exactly one leaf, with spatial splits in one or more. Same input, same result.
+ */
 Bvh buildBvh(std::span<const glm::vec3> positions, const BvhOptions& options = {});
 
 /** Boxes for moved corners: the tree keeps its shape, so that rays cost more the farther triangles have moved
- * from their neighbours. `positions`: as many as the tree was built of. */
+ * from their neighbours. `positions`: as many as the tree was built of, without spatial splits. */
 void refitBvh(Bvh& tree, std::span<const glm::vec3> positions, const BvhOptions& options = {});
 
 /** A child's box, decoded exactly. */

@@ -1,5 +1,7 @@
 #include "engine/scene/bvh_binary.hpp"
 
+#include "engine/scene/bvh_splits.hpp"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -82,6 +84,21 @@ struct Candidate {
     double cost = std::numeric_limits<double>::infinity();
 };
 
+/** The part of the root's surface from which on an overlap of two children makes planes be tried (Stich et
+ * al. 2009). */
+constexpr double kOverlap = 1e-5;
+
+/** References from which on planes are tried: with fewer, half the time of the build bought nothing. */
+constexpr std::uint32_t kPlanesFrom = 128;
+
+/** Boxes of the two sides of an object split. */
+std::array<Box, 2> sidesOf(const Bins& bins, int binCount, const Candidate& split) {
+    std::array<Box, 2> sides = {Box::empty(), Box::empty()};
+    for (int b = 0; b < binCount; ++b)
+        sides[b < split.bin ? 0 : 1].grow(bins.box[std::size_t(split.axis)][std::size_t(b)]);
+    return sides;
+}
+
 Candidate bestOf(const Bins& bins, const Binning& binning, double lengthWeight) {
     Candidate best;
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,11 +133,12 @@ std::uint32_t Reference::triangle() const {
 }
 
 BinaryTree::BinaryTree(std::span<const glm::vec3> positions, const BvhOptions& options)
-    : options_(options),
-      references_(positions.size() / 3),
-      nodes_(std::make_unique_for_overwrite<BinaryNode[]>(positions.size() / 3 * 2)),
-      cuts_(std::make_unique_for_overwrite<Cuts[]>(positions.size() / 3 * 2)) {
-    const std::uint32_t n = std::uint32_t(references_.size());
+    : options_(options), positions_(positions) {
+    const std::uint32_t n = std::uint32_t(positions.size() / 3);
+    const std::uint32_t room = std::uint32_t(options.spatialSplits * n);
+    references_.resize(n + room);
+    nodes_ = std::make_unique_for_overwrite<BinaryNode[]>(references_.size() * 2);
+    cuts_ = std::make_unique_for_overwrite<Cuts[]>(references_.size() * 2);
     const auto fill = [&](const tbb::blocked_range<std::uint32_t>& range) {
         for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
             const glm::vec3* p = &positions[std::size_t(i) * 3];
@@ -135,7 +153,9 @@ BinaryTree::BinaryTree(std::span<const glm::vec3> positions, const BvhOptions& o
         tbb::parallel_for(all, fill);
     else
         fill(all);
-    const Range range = measured(0, n);
+    Range range = measured(0, n);
+    range.room = room;
+    leastOverlap_ = kOverlap * range.box.size(0);
     const Vec4 extent = range.box.upper * 0.5f - range.box.lower * 0.5f;
     lengthWeight_ = 2e-6 * (double(extent[0]) + double(extent[1]) + double(extent[2]));
     build(0, range, 0);
@@ -226,6 +246,18 @@ BinaryTree::Split BinaryTree::partition(const Range& range, int depth) {
         fill(all, bins);
     const Candidate best = bestOf(bins, binning, lengthWeight_);
     if (best.axis < 0) return halves(range);
+    const std::array<Box, 2> sides = sidesOf(bins, binCount, best);
+    if (range.room > 0 && range.count >= kPlanesFrom) {
+        const Box both = {sides[0].lower > sides[1].lower ? sides[0].lower : sides[1].lower,
+                          sides[0].upper < sides[1].upper ? sides[0].upper : sides[1].upper};
+        if (!isEmpty(both) && both.size(0) > leastOverlap_) {
+            const SpatialSplit at = bestSpatialSplit(std::span(references_).subspan(range.first, range.count),
+                                                     positions_, range.box, lengthWeight_, options_.parallel);
+            if (at.cost < best.cost && at.left < range.count && at.right < range.count &&
+                at.left + at.right <= range.count + range.room)
+                return partitionSpace(range, at);
+        }
+    }
 
     Split split{{range.first, 0, Box::empty(), Box::empty()}, {0, 0, Box::empty(), Box::empty()}};
     const auto put = [&](Range& side, const Reference& reference) {
@@ -246,11 +278,91 @@ BinaryTree::Split BinaryTree::partition(const Range& range, int depth) {
             std::swap(references_[i++], references_[end]);
         }
     }
-    for (int b = 0; b < binCount; ++b)
-        (b < best.bin ? split.left : split.right).box.grow(bins.box[std::size_t(best.axis)][std::size_t(b)]);
+    split.left.box = sides[0];
+    split.right.box = sides[1];
     split.left.count = i - range.first;
     split.right.first = i;
     split.right.count = range.count - split.left.count;
+    shareRoom(range, split);
+    return split;
+}
+
+/** Parts a range's room among the halves by their references, and moves the right half behind the left one's.
+ */
+void BinaryTree::shareRoom(const Range& range, Split& split) {
+    const std::uint32_t total = split.left.count + split.right.count,
+                        room = range.room - (total - range.count);
+    if (room == 0) return;
+    split.left.room = std::uint32_t(std::uint64_t(room) * split.left.count / total);
+    split.right.room = room - split.left.room;
+    const auto from = references_.begin() + split.right.first;
+    split.right.first += split.left.room;
+    std::copy_backward(from, from + split.right.count,
+                       references_.begin() + split.right.first + split.right.count);
+}
+
+/** Cuts references by a plane; one whose both parts would cost more than the whole on one side is left whole
+ * ("reference unsplitting"). */
+BinaryTree::Split BinaryTree::partitionSpace(const Range& range, const SpatialSplit& at) {
+    Split split{{range.first, 0, Box::empty(), Box::empty()}, {0, 0, Box::empty(), Box::empty()}};
+    std::vector<Reference> right;
+    right.reserve(at.right);
+    const auto put = [&](Range& side, const Reference& reference) {
+        const Vec4 centre = centreOf(reference.box);
+        side.centroids.grow({centre, centre});
+        side.box.grow(reference.box);
+        ++side.count;
+    };
+    const auto toLeft = [&](const Reference& reference) {
+        put(split.left, reference);
+        references_[range.first + split.left.count - 1] = reference;  // at most as far as is read
+    };
+    const auto toRight = [&](const Reference& reference) {
+        put(split.right, reference);
+        right.push_back(reference);
+    };
+    Box leftBox = at.leftBox, rightBox = at.rightBox;
+    double left = at.left, rights = at.right;
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+        const Reference reference = references_[i];
+        if (reference.box.upper[at.axis] <= at.plane) {
+            toLeft(reference);
+            continue;
+        }
+        if (reference.box.lower[at.axis] >= at.plane) {
+            toRight(reference);
+            continue;
+        }
+        const Parts parts = cut(reference, positions_, at.axis, at.plane);
+        const auto sizeWith = [&](Box box) {
+            box.grow(reference.box);
+            return box.size(lengthWeight_);
+        };
+        const double leftSize = leftBox.size(lengthWeight_), rightSize = rightBox.size(lengthWeight_);
+        const double both = leftSize * left + rightSize * rights;
+        const double asLeft = sizeWith(leftBox) * left + rightSize * (rights - 1);
+        const double asRight = leftSize * (left - 1) + sizeWith(rightBox) * rights;
+        const bool noLeft = isEmpty(parts.below.box), noRight = isEmpty(parts.above.box);
+        if (noRight || (!noLeft && asLeft <= both && asLeft <= asRight)) {
+            toLeft(reference);
+            leftBox.grow(reference.box);
+            rights -= 1;
+        } else if (noLeft || asRight <= both) {
+            toRight(reference);
+            rightBox.grow(reference.box);
+            left -= 1;
+        } else {
+            toLeft(parts.below);
+            toRight(parts.above);
+        }
+    }
+    if (split.left.count == 0 || split.right.count == 0) {  // all left whole on one side
+        if (split.left.count == 0) std::ranges::copy(right, references_.begin() + range.first);
+        return halves(range);
+    }
+    split.right.first = range.first + split.left.count;
+    std::ranges::copy(right, references_.begin() + split.right.first);
+    shareRoom(range, split);
     return split;
 }
 
@@ -267,7 +379,7 @@ BinaryTree::Costs BinaryTree::build(std::uint32_t index, const Range& range, int
         return costs;
     }
     const Split split = partition(range, depth);
-    node.right = index + 2 * split.left.count;
+    node.right = index + 2 * (split.right.first - range.first);
     Costs left, right;
     if (options_.parallel && range.count >= kTaskTriangles)
         tbb::parallel_invoke([&] { left = build(index + 1, split.left, depth + 1); },
@@ -276,6 +388,7 @@ BinaryTree::Costs BinaryTree::build(std::uint32_t index, const Range& range, int
         left = build(index + 1, split.left, depth + 1);
         right = build(node.right, split.right, depth + 1);
     }
+    node.count = nodes_[index + 1].count + nodes_[node.right].count;
     std::array<double, 9> shared;  // cost as exactly two or more boxes, at most j
     for (std::size_t j = 2; j <= 8; ++j) {
         shared[j] = std::numeric_limits<double>::infinity();
@@ -288,8 +401,8 @@ BinaryTree::Costs BinaryTree::build(std::uint32_t index, const Range& range, int
         }
     }
     const double asNode = shared[8] + area;
-    const double asLeaf = range.count <= std::uint32_t(Bvh::kMaxLeafTriangles)
-                              ? area * range.count * options_.triangleCost
+    const double asLeaf = node.count <= std::uint32_t(Bvh::kMaxLeafTriangles)
+                              ? area * node.count * options_.triangleCost
                               : std::numeric_limits<double>::infinity();
     cuts[1] = asLeaf <= asNode ? 1 : 0;
     costs[0] = 0;

@@ -47,17 +47,19 @@ struct Reference {
     std::uint32_t triangle() const;
 };
 
-/** Its left child lies next to it, the right one behind all nodes that the left subtree has. */
+/** Its left child lies next to it, the right one behind all nodes that the left subtree may have. */
 struct BinaryNode {
     glm::vec3 lower;
-    std::uint32_t right;  ///< 0 for a single triangle
+    std::uint32_t right;  ///< 0 for a single reference
     glm::vec3 upper;
-    std::uint32_t count;  ///< triangles
+    std::uint32_t count;  ///< references
 };
 
 /** How a subtree is cut into at most j boxes, j = 2 to 8: at [j] the number of boxes that the left child
  * gets, 0 where fewer boxes than j are as good. [1]: 1 where the subtree is a leaf, [0] unused. */
 using Cuts = std::array<std::uint8_t, 9>;
+
+struct SpatialSplit;
 
 class BinaryTree {
 public:
@@ -68,13 +70,19 @@ public:
     std::uint32_t left(std::uint32_t index) const { return index + 1; }
     bool isLeaf(std::uint32_t index) const { return cuts_[index][1] != 0; }
     const Cuts& cuts(std::uint32_t index) const { return cuts_[index]; }
-    /** Triangles in the tree's order; a node's are consecutive, the left child's first. */
+    /** Triangles in the tree's order; a leaf's are consecutive. */
     std::uint32_t triangle(std::uint32_t place) const { return references_[place].triangle(); }
+    /** Place of the right child's first triangle, given the node's. */
+    std::uint32_t rightFirst(std::uint32_t index, std::uint32_t first) const {
+        return first + (nodes_[index].right - index) / 2;
+    }
 
 private:
+    /** References with room behind them for those that spatial splits add. */
     struct Range {
         std::uint32_t first, count;
         Box box, centroids;
+        std::uint32_t room = 0;
     };
     struct Split {
         Range left, right;
@@ -84,11 +92,15 @@ private:
 
     Costs build(std::uint32_t index, const Range& range, int depth);
     Split partition(const Range& range, int depth);
+    Split partitionSpace(const Range& range, const SpatialSplit& at);
+    void shareRoom(const Range& range, Split& split);
     Split partitionFew(const Range& range);
     Split halves(const Range& range) const;
     Range measured(std::uint32_t first, std::uint32_t count) const;
 
     BvhOptions options_;
+    std::span<const glm::vec3> positions_;
+    double leastOverlap_ = 0;  ///< of two children's boxes, in surface, from which on planes are tried
     double lengthWeight_ =
         0;  ///< a millionth of the root's edges: decides only where surfaces are as good as 0
     std::vector<Reference> references_;

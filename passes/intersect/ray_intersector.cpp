@@ -37,15 +37,15 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     assert(packed.nodeCount > 0 && capacity > 0 && capacity <= (1u << 23));
     Graph graph(device);
     const Buffer counters = graph.import(counters_);
+    SpecConstants spec = {{"ANY", question == RayQuestion::Any},
+                          {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}};
+    if (packed.splitTree) spec["SPLIT_TREE"] = true;
     std::vector<Binding> placed;
     if (!packed.placed.empty()) {
         placed_ = makeBuffer(device, "intersect.placed", packed.placed);
         placed.push_back({"uPlaced", graph.import(*placed_)});
     }
-    graph
-        .compute("intersect", kernelFor(packed),
-                 {.spec = {{"ANY", question == RayQuestion::Any},
-                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}}})
+    graph.compute("intersect", kernelFor(packed), {.spec = spec})
         .reads(placed)
         .reads({{"uTriangles", graph.import(triangles_)},
                 {"uNodes", graph.import(nodes_)},

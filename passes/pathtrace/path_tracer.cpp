@@ -85,6 +85,7 @@ struct PathTracer::Impl {
     SpecConstants constants() const {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
         if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
+        if (scene_.info().splitTree) spec["SPLIT_TREE"] = true;
         if (scene_.hasPlacedMeshes()) spec.merge(scene_.constants({"PLACED_BITS"}));
         spec["ORTHOGRAPHIC"] = orthographic_;
         spec.merge(SpecConstants(camera_.constants));
@@ -321,12 +322,14 @@ PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& options) {
     const bool choose = options.accelerator == AcceleratorKind::Auto;
     const bool moves = options.shutter != ShutterTimes{};
-    const bool tree = choose || options.accelerator == AcceleratorKind::Bvh;
+    const bool splits = options.accelerator == AcceleratorKind::SplitBvh;
+    const bool tree = choose || splits || options.accelerator == AcceleratorKind::Bvh;
     const Placing placing = tree && !moves && !options.radiosity ? options.placing : Placing::Flatten;
     return {.tree = !choose || moves || options.radiosity || placing == Placing::Always ||
                     scene.triangleCount() > kWrittenOutTriangles || scene.shapeCount() > kListedShapes,
             .writeOutLargest = choose && !moves && !options.radiosity,
-            .accelerator = choose ? AcceleratorKind::Bvh : options.accelerator,
+            .accelerator = tree ? AcceleratorKind::Bvh : options.accelerator,
+            .spatialSplits = splits && !options.radiosity,  // patches are found by their slots
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
             .lights = options.lights,
             .placing = placing};

@@ -79,9 +79,13 @@ std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& sce
 
 namespace {
 
+/** Places in leaves that spatial splits may add, in parts of the triangles: docs/benchmarks.md. */
+constexpr double kSpatialSplits = 0.3;
+
 /** The tree over all triangles but `left`, ascending. Its order goes by the triangles of the whole. */
-Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& left) {
-    if (left.empty()) return buildBvh(positions);
+Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& left,
+                const BvhOptions& options) {
+    if (left.empty()) return buildBvh(positions, options);
     std::vector<std::uint32_t> rest;
     std::vector<glm::vec3> corners;
     rest.reserve(positions.size() / 3 - left.size());
@@ -95,7 +99,7 @@ Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uin
         rest.push_back(g);
         corners.insert(corners.end(), positions.begin() + g * 3, positions.begin() + g * 3 + 3);
     }
-    Bvh tree = buildBvh(corners);
+    Bvh tree = buildBvh(corners, options);
     for (std::uint32_t& place : tree.order) place = rest[place];
     return tree;
 }
@@ -153,8 +157,12 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> corners,
         packed.shapesInTree = packed.hasShapes() && listed.size() < packed.shapeCount;
         std::vector<std::uint32_t> left;
         std::ranges::merge(out, listed, std::back_inserter(left));
-        Bvh tree = treeWithout(corners, left);
-        packed.firstWrittenOut = others - std::uint32_t(out.size());
+        BvhOptions building;
+        if (options.spatialSplits && !packed.shapesInTree) building.spatialSplits = kSpatialSplits;
+        Bvh tree = treeWithout(corners, left, building);
+        packed.firstWrittenOut = std::uint32_t(tree.order.size());
+        packed.triangleCount = packed.firstWrittenOut + std::uint32_t(left.size());
+        packed.splitTree = packed.firstWrittenOut + std::uint32_t(out.size()) > others;
         packed.nodeCount = std::uint32_t(tree.nodes.size());
         packed.treeDepth = tree.depth;
         static_assert(sizeof(BvhNode) == 5 * sizeof(glm::uvec4));
@@ -256,14 +264,20 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         corners.insert(corners.end(), standing.begin(), standing.end());
         packed.triangleCount += std::uint32_t(placed.placements.size());
         PackOptions inTree = options;
+        inTree.spatialSplits = false;
         inTree.writeOutLargest = false;  // nothing but trees knows which of equally near ones comes first
         order = accelerate(corners, inWorld, inTree, packed);
     } else {
+        PackOptions whole = options;
+        whole.spatialSplits = options.spatialSplits && keys.empty();
         order = accelerate(!keys.empty()
                                ? pack::waysBoxes(boxes.empty() ? keys : boxes)
                                : (packed.hasShapes() ? pack::treeCorners(positions, surfaces) : positions),
-                           surfaces, options, packed);
+                           surfaces, whole, packed);
     }
+    if (options.spatialSplits && (trees || !keys.empty() || packed.shapesInTree))
+        packed.skipped.emplace_back("spatial splits",
+                                    "boxes of shapes, placed meshes and moving triangles are not cut");
     for (const auto& key : keys)
         for (const std::uint32_t g : order)
             for (std::uint32_t k = 0; k < 3; ++k) packed.triangleKeys.emplace_back(key[g * 3 + k], 0.0f);

@@ -72,6 +72,9 @@ struct PackOptions {
     bool writeOutLargest = false;
     /** What finds triangles along a ray, not Auto; only Bvh puts triangles in the order of its leaves. */
     AcceleratorKind accelerator = AcceleratorKind::Bvh;
+    /** Of Bvh: spatial splits are made, and triangles may have several slots. Not where the tree holds boxes
+     * of shapes, placed meshes or ways of moving triangles, which cannot be cut. Hits are the same. */
+    bool spatialSplits = false;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
     bool sampleSurfaces = true;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
@@ -110,6 +113,7 @@ struct PackedScene {
      * without a tree. */
     std::vector<glm::uvec4> nodes;
     AcceleratorKind accelerator = AcceleratorKind::Bvh;  ///< of `nodes`
+    bool splitTree = false;  ///< some g have several slots: SPLIT_TREE of shaders/intersection/traverse.glsl
     /** Texels of `triangles` that are in no tree, for kernels to hold as code: of the slots from
      * firstWrittenOut to the last. All of a small scene without a tree. */
     std::vector<glm::vec4> writtenOut;

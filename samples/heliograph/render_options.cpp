@@ -186,16 +186,17 @@ void addPathOptions(CLI::App* command, RenderArguments& arguments) {
         ->check(CLI::Range(1e-3, 1.0))
         ->excludes("--roulette");
     command->add_flag("--no-nee", arguments.noNextEvent, "Trace without next-event estimation");
-    addChoice<AcceleratorKind>(
-        command, "--accelerator", options.accelerator,
-        {{"auto", AcceleratorKind::Auto},
-         {"bvh", AcceleratorKind::Bvh},
-         {"brute-force", AcceleratorKind::BruteForce},
-         {"grid", AcceleratorKind::Grid},
-         {"octree", AcceleratorKind::Octree},
-         {"kd-tree", AcceleratorKind::KdTree},
-         {"bsp", AcceleratorKind::Bsp}},
-        "auto (default); bvh, brute-force, grid, octree, kd-tree, bsp: same image, other times");
+    addChoice<AcceleratorKind>(command, "--accelerator", options.accelerator,
+                               {{"auto", AcceleratorKind::Auto},
+                                {"bvh", AcceleratorKind::Bvh},
+                                {"sbvh", AcceleratorKind::SplitBvh},
+                                {"brute-force", AcceleratorKind::BruteForce},
+                                {"grid", AcceleratorKind::Grid},
+                                {"octree", AcceleratorKind::Octree},
+                                {"kd-tree", AcceleratorKind::KdTree},
+                                {"bsp", AcceleratorKind::Bsp}},
+                               "auto (default); bvh, sbvh (with spatial splits), brute-force, grid, octree, "
+                               "kd-tree, bsp: same image, other times");
     addChoice<Scheduler>(command, "--scheduler", options.scheduler,
                          {{"auto", Scheduler::Auto},
                           {"megakernel", Scheduler::Megakernel},

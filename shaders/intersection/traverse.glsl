@@ -34,6 +34,8 @@
 layout(set = 0, binding = 21) uniform usamplerBuffer uNodes;
 /** Levels of the tree at most: each level leaves at most one entry. */
 layout(constant_id = 120) const int STACK_SIZE = 24;
+/** Whether spatial splits have put triangles into several slots: they are then told apart by g. */
+layout(constant_id = 119) const bool SPLIT_TREE = false;
 
 /** Turns a ray may take before it is given up and counted: lavapipe runs 65,535 turns of all loops of an
  * invocation and then silently stops. */
@@ -77,7 +79,7 @@ struct Traversal {
     uint nextMask;       ///< and those of the node after
     uint nextAll;
     uint nextBase;
-    int source;          ///< slot that the ray leaves and cannot meet again
+    int source;          ///< slot (with SPLIT_TREE the g) that the ray leaves and cannot meet again
     ivec2 target;        ///< range of triangles (g) that the ray goes to and that do not stand in its way
     float nearest;       ///< distance of the nearest hit so far, or the limit
     int slot;            ///< of the nearest hit so far; -1: none
@@ -151,6 +153,7 @@ Traversal beginTraversal(vec3 origin, vec3 direction, int source, ivec2 target, 
     t.nextBase = 0u;
     clearStack();
     t.source = source;
+    if (SPLIT_TREE) t.source = source < 0 ? source : int(texelFetch(uTriangles, max(source, 0) * 3).w);
     t.target = target;
     t.nearest = limit;
     t.slot = -1;
@@ -262,7 +265,7 @@ void visitTriangle(inout Traversal t, const bool any) {
 #else
     const int slot = candidate;
 #endif
-    bool counts = slot != t.source;
+    bool counts = (SPLIT_TREE ? g : slot) != t.source;
 #ifdef SHAPES
     if (SHAPES_IN_TREE) {
         const Triangle shape = fetchTriangle(slot);

@@ -12,8 +12,8 @@
 namespace helio::test {
 namespace {
 
-constexpr std::array kKinds = {AcceleratorKind::Bvh, AcceleratorKind::Grid, AcceleratorKind::Octree,
-                               AcceleratorKind::KdTree, AcceleratorKind::Bsp};
+constexpr std::array kKinds = {AcceleratorKind::Bvh,    AcceleratorKind::Grid, AcceleratorKind::Octree,
+                               AcceleratorKind::KdTree, AcceleratorKind::Bsp,  AcceleratorKind::SplitBvh};
 
 /** Random triangles of very uneven size and slenderness, some flat in a plane of the axes, some coincident.
  */
@@ -32,11 +32,30 @@ Corners mixture() {
     return corners;
 }
 
+PackOptions packingFor(AcceleratorKind kind) {
+    PackOptions options;
+    if (kind == AcceleratorKind::SplitBvh)
+        options.spatialSplits = true;
+    else
+        options.accelerator = kind;
+    return options;
+}
+
+/** `sources`: g of the triangle that a ray leaves, -1 for none. */
 std::vector<RayHit> hitsOf(AcceleratorKind kind, const Scene& scene, RayQuestion question,
-                           std::span<const Ray> rays, std::vector<std::uint32_t>& g) {
-    const PackedScene packed = packScene(scene, {.accelerator = kind});
+                           std::span<const Ray> rays, std::span<const std::int32_t> sources,
+                           std::vector<std::uint32_t>& g) {
+    const PackedScene packed = packScene(scene, packingFor(kind));
+    EXPECT_TRUE(!packed.splitTree || kind == AcceleratorKind::SplitBvh);
+    EXPECT_EQ(packed.triangles.size(), packed.triangleCount * 3u);
+    std::vector<std::int32_t> slotOf(scene.triangleCount(), -1);  // the last of several
+    for (std::uint32_t slot = 0; slot < packed.triangleCount; ++slot)
+        slotOf[glm::floatBitsToUint(packed.triangles[slot * 3].w)] = std::int32_t(slot);
+    std::vector<Ray> leaving(rays.begin(), rays.end());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        leaving[i].source = sources[i] < 0 ? -1 : slotOf[std::size_t(sources[i])];
     RayIntersector intersector(device(), packed, question, rays.size());
-    intersector.upload(rays);
+    intersector.upload(leaving);
     intersector.run();
     EXPECT_EQ(intersector.abandoned(), 0u);
     const std::vector<RayHit> hits = intersector.hits();
@@ -52,12 +71,20 @@ void expectSameHits(const char* name, const Corners& corners, float reach) {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
     std::vector<Ray> rays;
+    std::vector<std::int32_t> sources;
     for (int i = 0; i < 60000; ++i) {
-        const glm::vec3 origin = reach * glm::vec3(uniform(random), uniform(random), uniform(random));
+        glm::vec3 origin = reach * glm::vec3(uniform(random), uniform(random), uniform(random));
         // At corners, so that edges and cells' borders are met; along axes; anywhere.
         glm::vec3 direction = corners[random() % corners.size()] - origin;
         if (i % 4 == 1) direction = {uniform(random), uniform(random), uniform(random)};
         if (i % 8 == 2) direction = glm::vec3(0), direction[i / 8 % 3] = i % 16 == 2 ? 1.0f : -1.0f;
+        sources.push_back(-1);
+        if (i % 3 == 1) {  // from a point of a triangle
+            sources.back() = std::int32_t(random() % (corners.size() / 3));
+            const glm::vec3* t = &corners[std::size_t(sources.back()) * 3];
+            const float u = 0.5f + 0.5f * uniform(random), v = (1.0f - u) * (0.5f + 0.5f * uniform(random));
+            origin = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+        }
         rays.push_back({.origin = origin,
                         .limit = i % 5 == 0 ? 0.9f : std::numeric_limits<float>::infinity(),
                         .direction = direction});
@@ -65,12 +92,12 @@ void expectSameHits(const char* name, const Corners& corners, float reach) {
     for (RayQuestion question : {RayQuestion::Closest, RayQuestion::Any}) {
         std::vector<std::uint32_t> wantedG, g;
         const std::vector<RayHit> wanted =
-            hitsOf(AcceleratorKind::BruteForce, scene, question, rays, wantedG);
+            hitsOf(AcceleratorKind::BruteForce, scene, question, rays, sources, wantedG);
         const auto found = std::ranges::count_if(wanted, [](const RayHit& hit) { return hit.slot >= 0; });
         EXPECT_GT(found, 10000);
         EXPECT_LT(found, 59000);
         for (AcceleratorKind kind : kKinds) {
-            const std::vector<RayHit> hits = hitsOf(kind, scene, question, rays, g);
+            const std::vector<RayHit> hits = hitsOf(kind, scene, question, rays, sources, g);
             std::size_t wrong = 0;
             for (std::size_t i = 0; i < hits.size(); ++i)
                 wrong += question == RayQuestion::Closest
@@ -82,6 +109,7 @@ void expectSameHits(const char* name, const Corners& corners, float reach) {
 }
 
 TEST(Intersection, AcceleratorsGiveTheHitsOfBruteForce) {
+    EXPECT_TRUE(packScene(sceneOf(mixture()), packingFor(AcceleratorKind::SplitBvh)).splitTree);
     expectSameHits("mixture", mixture(), 3.0f);
     expectSameHits("sphere", octasphere(4), 2.0f);
     Corners away = octasphere(3);

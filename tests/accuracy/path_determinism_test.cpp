@@ -93,7 +93,7 @@ TEST(PathDeterminism, AcceleratorsDoNotMatter) {
     };
     const Traced tree = image(AcceleratorKind::Bvh);
     for (AcceleratorKind kind : {AcceleratorKind::BruteForce, AcceleratorKind::Grid, AcceleratorKind::Octree,
-                                 AcceleratorKind::KdTree, AcceleratorKind::Bsp})
+                                 AcceleratorKind::KdTree, AcceleratorKind::Bsp, AcceleratorKind::SplitBvh})
         EXPECT_EQ(hashOf(image(kind)), hashOf(tree)) << int(kind);
 
     // By default the walls are written out beside the tree, two triangles as one quadrilateral, whose

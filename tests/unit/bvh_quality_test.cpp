@@ -136,5 +136,106 @@ TEST(BvhQuality, RefittedBoxesHoldMovedTriangles) {
     EXPECT_TRUE(none.nodes.empty());
 }
 
+/** Sticks in all directions, whose boxes are large, among small triangles. */
+Positions sticks(std::size_t count, float scale, const glm::vec3& at) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    const auto point = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
+    Positions positions;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 from = point(), along = (i % 6 == 0 ? 0.8f : 0.01f) * point(),
+                        across = 0.01f * point();
+        for (const glm::vec3& p : {from, from + along, from + across}) positions.push_back(at + scale * p);
+    }
+    return positions;
+}
+
+/** Of every leaf of a tree: its triangles, and the box that rays meet. */
+void forLeaves(const Bvh& tree, std::uint32_t index,
+               const std::function<void(std::span<const std::uint32_t>, const BvhBox&)>& seen) {
+    const BvhNode& node = tree.nodes[index];
+    for (int s = 0; s < 8; ++s) {
+        if (node.isInner(s))
+            forLeaves(tree, node.firstChild + std::uint32_t(s), seen);
+        else if (const std::uint32_t count = node.triangleCount(s); count > 0)
+            seen(std::span(tree.order).subspan(node.triangleBegin(s), count), childBox(node, s));
+    }
+}
+
+TEST(BvhSplits, EveryPointOfATriangleIsInALeafOfIt) {
+    for (const auto& [name, positions] :
+         {std::pair("sticks", sticks(3000, 1.0f, glm::vec3(0.0f))),
+          std::pair("far away", sticks(3000, 1.0f, glm::vec3(1000.0f, -3e4f, 0.0f))),
+          std::pair("huge", sticks(3000, 1e30f, glm::vec3(0.0f))),
+          std::pair("tiny", sticks(3000, 1e-30f, glm::vec3(0.0f)))}) {
+        SCOPED_TRACE(name);
+        const std::size_t triangles = positions.size() / 3;
+        BvhOptions options;
+        options.spatialSplits = 0.5;
+        const Bvh tree = buildBvh(positions, options);
+        EXPECT_GT(tree.order.size(), triangles + triangles / 20);
+        EXPECT_LE(double(tree.order.size()), 1.5 * double(triangles));
+        options.parallel = false;
+        const Bvh serial = buildBvh(positions, options);
+        EXPECT_EQ(serial.order, tree.order);
+        ASSERT_EQ(serial.nodes.size(), tree.nodes.size());
+        EXPECT_EQ(0,
+                  std::memcmp(serial.nodes.data(), tree.nodes.data(), tree.nodes.size() * sizeof(BvhNode)));
+
+        std::vector<std::vector<BvhBox>> boxes(triangles);
+        std::size_t twice = 0;
+        forLeaves(tree, 0, [&](std::span<const std::uint32_t> leaf, const BvhBox& box) {
+            for (std::size_t i = 0; i < leaf.size(); ++i) {
+                boxes[leaf[i]].push_back(box);
+                twice += std::size_t(std::ranges::count(leaf, leaf[i]) - 1);
+            }
+        });
+        EXPECT_EQ(twice, 0u);
+        std::mt19937_64 random(11);
+        std::uniform_real_distribution<double> uniform(0.0, 1.0);
+        std::size_t outside = 0;
+        for (std::size_t t = 0; t < triangles; ++t)
+            for (int k = 0; k < 40; ++k) {
+                double u = uniform(random), v = uniform(random);
+                if (k % 4 == 0) v = 0.0;  // on an edge
+                if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+                const glm::dvec3 a(positions[t * 3]), b(positions[t * 3 + 1]), c(positions[t * 3 + 2]);
+                const glm::dvec3 p = a * (1.0 - u - v) + b * u + c * v;
+                const double slack = 1e-14 * glm::length(a);  // of p itself
+                outside += std::ranges::none_of(boxes[t], [&](const BvhBox& box) {
+                    return glm::all(glm::greaterThanEqual(p, box.lower - slack)) &&
+                           glm::all(glm::lessThanEqual(p, box.upper + slack));
+                });
+            }
+        EXPECT_EQ(outside, 0u);
+        const double plain = buildBvh(positions).cost;
+        fmt::print("{}: {} triangles in {} places, cost {:.2f} of {:.2f}\n", name, triangles,
+                   tree.order.size(), tree.cost, plain);
+        EXPECT_LT(tree.cost, 0.95 * plain);
+    }
+}
+
+TEST(BvhSplits, TrianglesThatNoPlanePartsAreLeftWhole) {
+    BvhOptions options;
+    options.spatialSplits = 1.0;
+    // All in one place; all in one point; nothing cut where nothing overlaps.
+    Positions same, points, apart;
+    for (int i = 0; i < 400; ++i) {
+        for (const glm::vec3& p : {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 1)}) {
+            same.push_back(p);
+            points.push_back(glm::vec3(5.0f));
+            apart.push_back(p * 0.01f + glm::vec3(float(i), 0, 0));
+        }
+    }
+    for (const Positions* positions : {&points, &apart}) {
+        const Bvh tree = buildBvh(*positions, options);
+        EXPECT_EQ(tree.order.size(), 400u);
+        expectSound(*positions, tree, "whole");
+    }
+    EXPECT_LE(buildBvh(same, options).order.size(), 800u);
+    EXPECT_EQ(buildBvh({}, options).nodes.size(), 0u);
+    EXPECT_EQ(buildBvh(std::span(apart).first(3), options).order.size(), 1u);
+}
+
 }  // namespace
 }  // namespace helio

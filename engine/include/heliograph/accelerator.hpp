@@ -4,7 +4,7 @@
 
 namespace helio {
 
-/** The values from BruteForce on are those of shaders/intersection/comparators.glsl. */
+/** The values from BruteForce to Bsp are those of shaders/intersection/comparators.glsl. */
 enum class AcceleratorKind : std::uint8_t {
     Auto,        ///< few triangles are written out as code, more get a Bvh
     Bvh,         ///< bounding volume hierarchy: the fastest
@@ -12,7 +12,8 @@ enum class AcceleratorKind : std::uint8_t {
     Grid,
     Octree,
     KdTree,
-    Bsp
+    Bsp,
+    SplitBvh  ///< a Bvh with spatial splits: slower to build, more memory, fewer boxes on a ray's way
 };
 
 }  // namespace helio

@@ -1,7 +1,7 @@
 /** @file
  * Traversal against Embree's, in one interleaved run: same triangles, same rays, same threads.
  *
- *     bench_traversal [--runs 9] [--size 1280x704] [--json FILE] [--counts MAX] [ASSET...]
+ *     bench_traversal [--runs 9] [--size 1280x704] [--splits] [--json FILE] [--counts MAX] [ASSET...]
  *
  * Prints, per mesh and kind of ray, the median speeds and the median of the pairs' ratios (1: as fast as
  * rtcIntersect1 or rtcOccluded1), then build times and bytes per triangle. --counts adds cost against the
@@ -52,13 +52,15 @@ Cost costOf(const auto& work) {
 struct Options {
     int runs = 9;
     std::uint32_t width = 1280, height = 704;
+    bool splits = false;
 };
 
 /** World-space corners in scene order. */
 Corners cornersOf(const PackedScene& packed) {
-    Corners corners(packed.triangles.size());
+    Corners corners;
     for (std::size_t slot = 0; slot < packed.triangles.size(); slot += 3) {
         const std::size_t g = glm::floatBitsToUint(packed.triangles[slot].w);
+        corners.resize(std::max(corners.size(), (g + 1) * 3));
         for (std::size_t k = 0; k < 3; ++k) corners[g * 3 + k] = glm::vec3(packed.triangles[slot + k]);
     }
     return corners;
@@ -81,18 +83,21 @@ std::size_t differing(RayQuestion question, const std::vector<RayHit>& ours,
 
 nlohmann::json measure(Device& device, const std::string& name, const Scene& scene, const Options& options) {
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-    PackedScene packed = packScene(scene);
+    PackOptions packing;
+    packing.spatialSplits = options.splits;
+    PackedScene packed = packScene(scene, packing);
     const Corners corners = cornersOf(packed);
-    const double triangles = double(packed.triangleCount);
+    const double triangles = double(corners.size() / 3);
     std::vector<double> ours = {packed.treeSeconds}, theirs;
     for (int run = 0; run < 3; ++run) {
         theirs.push_back(EmbreeScene(corners, threads).buildSeconds());
-        if (run > 0) ours.push_back(packScene(scene).treeSeconds);
+        if (run > 0) ours.push_back(packScene(scene, packing).treeSeconds);
     }
     const EmbreeScene embree(corners, threads);
     nlohmann::json result = {
         {"mesh", name},
-        {"triangles", packed.triangleCount},
+        {"triangles", corners.size() / 3},
+        {"slots", packed.triangleCount},
         {"build_seconds", median(ours)},
         {"embree_build_seconds", median(theirs)},
         {"build_ratio", median(ours) / median(theirs)},
@@ -103,7 +108,7 @@ nlohmann::json measure(Device& device, const std::string& name, const Scene& sce
     fmt::print(
         "{}: {} triangles; build {:.3f} s, {:.2f} of Embree's; {:.0f} bytes a triangle ({:.0f} in nodes), "
         "Embree {:.0f}; {} levels\n",
-        name, packed.triangleCount, median(ours), median(ours) / median(theirs),
+        name, corners.size() / 3, median(ours), median(ours) / median(theirs),
         result["bytes_per_triangle"].get<double>(), result["node_bytes_per_triangle"].get<double>(),
         result["embree_bytes_per_triangle"].get<double>(), packed.treeDepth);
     for (const RaySet& set : raySets(embree, corners, options.width, options.height)) {
@@ -127,6 +132,7 @@ nlohmann::json measure(Device& device, const std::string& name, const Scene& sce
             "  {:<9} {:>8} rays  {:7.2f} Mray/s  Embree {:7.2f}  ratio {:.3f} (CPU time {:.3f})  differ {}\n",
             set.name, set.rays.size(), rays / median(mine), rays / median(other), median(ratios),
             median(cpuRatios), wrong);
+        if (intersector.abandoned() > 0) fmt::print("  {} rays given up\n", intersector.abandoned());
         std::fflush(stdout);
         result["rows"].push_back({{"rays", set.name},
                                   {"count", set.rays.size()},
@@ -146,6 +152,7 @@ int run(int argc, char** argv) {
     double counts = 0;
     std::vector<std::string> assets, only;
     app.add_option("--runs", options.runs, "interleaved pairs")->check(CLI::PositiveNumber);
+    app.add_flag("--splits", options.splits, "trees with spatial splits");
     app.add_option("--size", size, "pixels of the camera, multiples of 8");
     app.add_option("--json", json, "file for the results");
     app.add_option("--counts", counts, "also cost against the number of triangles, 10^2 to this");
