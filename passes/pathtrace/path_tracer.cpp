@@ -331,6 +331,7 @@ PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& 
             .accelerator = tree ? AcceleratorKind::Bvh : options.accelerator,
             .spatialSplits = splits && !options.radiosity,  // patches are found by their slots
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
+            .raysFindEnvironment = !options.whitted,
             .lights = options.lights,
             .placing = placing};
 }

@@ -77,6 +77,9 @@ struct PackOptions {
     bool spatialSplits = false;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
     bool sampleSurfaces = true;
+    /** Rays that arrive at an environment by chance bring their part of its light (multiple importance
+     * sampling), so that light sampling need not draw directions to its dim parts. */
+    bool raysFindEnvironment = false;
     /** Adaptive and Uniform make tables (lightTables) where there are lights to choose among. */
     LightChoice lights = LightChoice::Power;
     /** Of Bvh alone, for scenes that do not move. Hits are the same. */
@@ -157,7 +160,8 @@ struct PackedScene {
     /** What a white Lambertian surface reflects of the image, by its normal in the image's frame: at column i
      * and row j that of u = i / width, v = j / height, both poles included. Empty unless asked for. */
     std::vector<glm::vec4> diffuseEnvironment;
-    double environmentPower = 0;  ///< radiance of the image over all directions: W/m^2, mean over RGB
+    /** Radiance of the image over all directions, of what light sampling draws: W/m^2, mean over RGB. */
+    double environmentPower = 0;
     std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
     std::uint32_t triangleCount = 0;                ///< slots: with shapes and placements
     std::uint32_t shapeCount = 0;
