@@ -75,7 +75,8 @@ std::function<RasterPush(std::uint32_t, std::uint32_t)> RasterPasses::pushOf() c
     };
 }
 
-Pass RasterPasses::setUp(const Kernel& plain, const ComputeOptions& options) {
+Pass RasterPasses::setUp(const Kernel& plain, ComputeOptions options) {
+    options.spec["LANES"] = isTall() ? 16u : 64u;
     return graph_.compute("raster.setup", peeling(plain), options)
         .reads({{"uTriangles", triangles_.buffer}})
         .reads(limit_)

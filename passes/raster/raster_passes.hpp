@@ -36,7 +36,7 @@ private:
     std::function<RasterPush(std::uint32_t first, std::uint32_t count)> pushOf() const;
 
     /** The pass that sets up a batch, without its commands. */
-    Pass setUp(const Kernel& plain, const ComputeOptions& options);
+    Pass setUp(const Kernel& plain, ComputeOptions options);
     /** Draws what `setUpBatch` sets up; `isFirst`: nothing has been drawn before; `once`: where in
      * `clusterState_` it says whether there is anything to draw. */
     void drawBatch(bool isFirst, std::optional<std::uint64_t> once, const std::function<void()>& setUpBatch);

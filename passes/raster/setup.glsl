@@ -7,7 +7,9 @@
 #include "shaders/raster/triangle.glsl"
 #include "shaders/raster/state.glsl"
 
-layout(local_size_x = 64) in;
+/// Few where subgroups are narrow: what a subgroup does once, loading the view above all, then serves more triangles.
+layout(constant_id = 127) const uint LANES = 64u;
+layout(local_size_x = 64, local_size_x_id = 127) in;
 layout(set = 0, binding = 1, std430) buffer uVisibility { uint64_t visibility[]; };
 layout(set = 0, binding = 2, std430) buffer uState { RasterState state; };
 layout(set = 0, binding = 3, std430) buffer uCounters { uint64_t counters[]; };
@@ -27,33 +29,38 @@ layout(set = 0, binding = 7) uniform usamplerBuffer uLimit;  ///< what is not be
 // A small triangle covers at most SMALL x SMALL pixels' centres; SMALL_EXTENT keeps its edge functions in 32 bits.
 const int SMALL = 8;
 const int SMALL_EXTENT = 8192;
-const uint PER_THREAD = 8u;
+const uint GROUP_TRIANGLES = 512u, PER_THREAD = GROUP_TRIANGLES / LANES;
 
 shared uint packed[4];
 
-bool beyondGuardBand(HomogeneousVertex v) {
-    double reach = GUARD_BAND * v.w;
-    return v.x > reach || v.x < -reach || v.y > reach || v.y < -reach;
+/// A snapped coordinate of the guard band's edge; of what lies at or beyond it clipping decides.
+const int SNAP_LIMIT = int(GUARD_BAND) * SUBPIXELS;
+
+/// As snap() does before the guard band's edge, and no nearer than that beyond it. Anything behind the eye.
+ivec2 snapWithin(HomogeneousVertex v) {
+    const double limit = double(SNAP_LIMIT);
+    precise double x = floor(v.x / v.w * 256.0LF + 0.5LF);
+    precise double y = floor(v.y / v.w * 256.0LF + 0.5LF);
+    return ivec2(int(greater(lesser(x, limit), -limit)), int(greater(lesser(y, limit), -limit)));
 }
 
+/// The triangle that an invocation sets up in turn k, and whether there is one. A subgroup's turns lie one after the
+/// other in memory.
+uint ownTriangle(uint k, uint lane, out bool isThere) {
+    uint wide = min(gl_SubgroupSize, LANES), inside = lane % wide;
+    uint place = (lane - inside) * PER_THREAD + k * wide + inside;
 #ifdef CLUSTERS
-/// First triangle of the cluster that this workgroup sets up in turn k, and whether there is one.
-uint clusterAt(uint k, out bool isThere) {
-    uint place = push.first + gl_WorkGroupID.x * PER_THREAD + k;
-    isThere = place < texelFetch(uClusterState, CLUSTER_COUNT + PHASE).x;
+    uint turn = push.first + gl_WorkGroupID.x * (GROUP_TRIANGLES / CLUSTER_TRIANGLES) + place / CLUSTER_TRIANGLES;
+    isThere = turn < texelFetch(uClusterState, CLUSTER_COUNT + PHASE).x;
     uint all = texelFetch(uClusterState, CLUSTER_ALL).x, front = texelFetch(uClusterState, CLUSTER_SEEN).x;
-    uint at = PHASE == 1 ? all + place : place < front ? place : all - 1u - (place - front);
-    return texelFetch(uClusterList, isThere ? int(at) : 0).x * CLUSTER_TRIANGLES;
-}
-#endif
-
-/// The triangle that an invocation set up in turn k.
-uint ownTriangle(uint k, uint lane) {
-#ifdef CLUSTERS
-    bool isThere;
-    return clusterAt(k, isThere) + lane;
+    uint at = PHASE == 1 ? all + turn : turn < front ? turn : all - 1u - (turn - front);
+    uint t = texelFetch(uClusterList, isThere ? int(at) : 0).x * CLUSTER_TRIANGLES + place % CLUSTER_TRIANGLES;
+    isThere = isThere && t < push.count;
+    return isThere ? t : 0u;
 #else
-    return push.first + gl_WorkGroupID.x * (64u * PER_THREAD) + k * 64u + lane;
+    uint index = gl_WorkGroupID.x * GROUP_TRIANGLES + place;
+    isThere = index < push.count;
+    return push.first + min(index, push.count - 1u);
 #endif
 }
 
@@ -63,29 +70,22 @@ void main() {
     barrier();
 
     ivec2 size = imageSizePixels();
-    double width = double(size.x), height = double(size.y);
     uint outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
          clippedCount = 0u, visited = 0u, covered = 0u;
     uint tiledBits = 0u, clippedBits = 0u;  // of this invocation's triangles
     [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
-#ifdef CLUSTERS
         bool valid;
-        uint t = clusterAt(k, valid) + lane;
-        valid = valid && t < push.count;
-        t = valid ? t : 0u;
-#else
-        uint index = gl_WorkGroupID.x * (64u * PER_THREAD) + k * 64u + lane;
-        bool valid = index < push.count;
-        uint t = push.first + min(index, push.count - 1u);
-#endif
+        uint t = ownTriangle(k, lane, valid);
         Triangle source = fetchTriangle(int(t));
         HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
 
-        // Each test is linear in homogeneous pixels, hence right for vertices behind the eye too.
+        // What lies behind the near plane in part is left to clipping; of the rest, snapped corners tell what is outside.
         double least = lesser(a.near, lesser(b.near, c.near)), most = greater(a.near, greater(b.near, c.near));
-        bool outside = (a.x < 0.0LF && b.x < 0.0LF && c.x < 0.0LF) || (a.y < 0.0LF && b.y < 0.0LF && c.y < 0.0LF) ||
-                       (a.x > width * a.w && b.x > width * b.w && c.x > width * c.w) ||
-                       (a.y > height * a.w && b.y > height * b.w && c.y > height * c.w) || most < 0.0LF;
+        bool before = least >= 0.0LF;
+        ivec2 p = snapWithin(a), q = snapWithin(b), r = snapWithin(c);
+        ivec2 lowest = min(p, min(q, r)), highest = max(p, max(q, r));
+        bool beside = min(highest.x, highest.y) < 0 || lowest.x > size.x * SUBPIXELS || lowest.y > size.y * SUBPIXELS;
+        bool outside = most < 0.0LF || (before && beside);
         outsideCount += uint(valid && outside);
         valid = valid && !outside;
 
@@ -94,11 +94,11 @@ void main() {
         backCount += uint(valid && back);
         valid = valid && !back;
 
-        bool clip = valid && (beyondGuardBand(a) || beyondGuardBand(b) || beyondGuardBand(c) || least < 0.0LF);
+        bool far = min(lowest.x, lowest.y) <= -SNAP_LIMIT || max(highest.x, highest.y) >= SNAP_LIMIT;
+        bool clip = valid && (!before || far);
         clippedBits |= uint(clip) << k;
         valid = valid && !clip;
 
-        ivec2 p = snap(a.x, a.y, a.w), q = snap(b.x, b.y, b.w), r = snap(c.x, c.y, c.w);
         int64_t area = signedArea(p, q, r);
         ivec4 bounds = pixelBounds(p, q, r, size);
         ivec2 cells = bounds.zw - bounds.xy + 1;
@@ -106,7 +106,7 @@ void main() {
         emptyCount += uint(valid && none);
         valid = valid && !none;
 
-        ivec2 extent = max(p, max(q, r)) - min(p, min(q, r));
+        ivec2 extent = highest - lowest;
         bool small = max(cells.x, cells.y) <= SMALL && max(extent.x, extent.y) <= SMALL_EXTENT;
         bool tiled = valid && !small;
         tiledBits |= uint(tiled) << k;
@@ -124,24 +124,28 @@ void main() {
         int low = depthCode(double(plane.low)), high = depthCode(double(plane.high));
         uint id = uint(source.g);
         visited += valid ? uint(cells.x * cells.y) : 0u;
-        // First which pixels are covered, row by row, then those alone: an atomic's code costs far more than a test,
-        // even where it is masked out. Bit 8 y + x.
+        // First which pixels are covered, four by two at a time, then those alone: an atomic's code costs far more than
+        // a test, even where it is masked out. Bit 8 y + x.
         int width_ = valid ? cells.x : 0, rows = valid ? cells.y : 0;
         uint inRow = (1u << width_) - 1u;
         uint64_t coverage = 0ul;
-        for (int y = 0; y < rows; ++y) {
-            uint outsideRow = 0u;
-            ivec3 edge = e;
+        for (int y = 0; y < rows; y += 2) {
+            uint upper = 0u, lower = 0u;  // bit x: outside
+            ivec3 edge = e, below = e + down;
             for (int first = 0; first < width_; first += 4) {
-                uint outside4 = 0u;
+                uint upper4 = 0u, lower4 = 0u;
                 [[unroll]] for (int x = 0; x < 4; ++x) {
-                    outside4 |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
+                    upper4 |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
+                    lower4 |= uint(below.x | below.y | below.z) >> (31 - x) & (1u << x);
                     edge += right;
+                    below += right;
                 }
-                outsideRow |= outside4 << first;
+                upper |= upper4 << first;
+                lower |= lower4 << first;
             }
-            coverage |= uint64_t(~outsideRow & inRow) << (8 * y);
-            e += down;
+            uint two = (~upper & inRow) | (y + 1 < rows ? (~lower & inRow) << 8 : 0u);
+            coverage |= uint64_t(two) << (8 * y);
+            e += 2 * down;
         }
         uvec2 mask = unpackUint2x32(coverage);
         covered += uint(bitCount(mask.x) + bitCount(mask.y));
@@ -165,16 +169,17 @@ void main() {
     }
 
     // Lists last, and once: an atomic's code and a store's cost as much where every invocation is masked out.
+    bool isThere;
     largeCount = bitCount(tiledBits);
     uint at = 0u;
     if (tiledBits != 0u) at = atomicAdd(state.largeCount, largeCount);
-    for (; tiledBits != 0u; tiledBits &= tiledBits - 1u) large[at++] = ownTriangle(uint(findLSB(tiledBits)), lane);
+    for (; tiledBits != 0u; tiledBits &= tiledBits - 1u) large[at++] = ownTriangle(uint(findLSB(tiledBits)), lane, isThere);
     clippedCount = bitCount(clippedBits);
     if (clippedBits != 0u) at = atomicAdd(state.clippedCount, clippedCount);
-    for (; clippedBits != 0u; clippedBits &= clippedBits - 1u) clipped[at++] = ownTriangle(uint(findLSB(clippedBits)), lane);
+    for (; clippedBits != 0u; clippedBits &= clippedBits - 1u) clipped[at++] = ownTriangle(uint(findLSB(clippedBits)), lane, isThere);
 
     // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 512
-    // triangles, which 10 bits hold, and tests at most 2^9 pixels a lane in 2^6 lanes.
+    // triangles, which 10 bits hold, and tests at most 2^15 pixels.
     uvec4 sums = subgroupAdd(uvec4(outsideCount | backCount << 10 | emptyCount << 20,
                                    smallCount | largeCount << 10 | clippedCount << 20, visited, covered));
     if (subgroupElect()) {
@@ -186,8 +191,8 @@ void main() {
     barrier();
     if (lane == 0u) {
 #ifndef CLUSTERS  // else culling has counted them
-        uint begin = gl_WorkGroupID.x * (64u * PER_THREAD);
-        atomicAdd(counters[COUNT_TRIANGLES], uint64_t(min(64u * PER_THREAD, push.count - begin)));
+        uint begin = gl_WorkGroupID.x * GROUP_TRIANGLES;
+        atomicAdd(counters[COUNT_TRIANGLES], uint64_t(min(GROUP_TRIANGLES, push.count - begin)));
 #endif
     } else if (lane <= 6u) {
         uint value = packed[(lane - 1u) / 3u] >> (10u * ((lane - 1u) % 3u)) & 1023u;
