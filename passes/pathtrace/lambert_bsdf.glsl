@@ -14,6 +14,9 @@ const uint LOOP_TURNS = 6u;  // NOISE_OCTAVES
 const uint LOOP_TURNS = 0u;
 #endif
 
+/** surfaceValues() weighs light found by sampling lights against light found by its own directions. */
+const bool WEIGHS_LIGHT = false;
+
 struct SurfaceBsdf {
     vec3 albedo;
 };
@@ -69,7 +72,8 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return r;
 }
 /** Values of a direction to a light, where one `asks`, and of the direction drawn. */
-SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, inout SurfaceSample next) {
+SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
+                           inout SurfaceSample next) {
     const float cosine = dot(s.shading, toLight);
     return SurfaceValue(dot(s.face, toLight) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
 }

@@ -19,6 +19,10 @@
 #include "shaders/sampling/sampler.glsl"
 #include "shaders/scene/surface_material.glsl"
 
+#ifdef TILTED_FACETS
+#include "shaders/scattering/tilted_facets.glsl"
+#endif
+
 /** Those of lambert_bsdf.glsl, and one to choose a lobe and a wavelength. */
 const uint DIMENSIONS_PER_SCATTERING = 4u;
 /** Turns of loops that a scattering may take: Beckmann's slopes are found by iteration,
@@ -28,7 +32,13 @@ const uint NOISE_TURNS = 6u;  // NOISE_OCTAVES
 #else
 const uint NOISE_TURNS = 0u;
 #endif
+#ifdef TILTED_FACETS
+const uint LOOP_TURNS = 32u * (HAS_MODELS ? 80u : 12u) + NOISE_TURNS;  // FACET_TURNS
+const bool WEIGHS_LIGHT = true;
+#else
 const uint LOOP_TURNS = (HAS_MODELS ? 40u : 5u) + NOISE_TURNS;
+const bool WEIGHS_LIGHT = false;
+#endif
 const float LEAST_COSINE = 0.01;
 
 struct SurfaceBsdf {
@@ -39,6 +49,11 @@ struct SurfaceBsdf {
     uint model;   ///< 0: glTF's
     GltfSurface gltf;
     ModelSurface other;
+#ifdef TILTED_FACETS
+    TiltedFacets facets;
+    bool folds;      ///< see walkFacets()
+    uint facetKey;
+#endif
 };
 struct SurfaceValue {
     float density;
@@ -112,6 +127,14 @@ vec3 lightSide(SurfaceBsdf bsdf, SurfacePoint s) {
     return through && thin ? vec3(0.0) : outside;
 }
 
+#ifdef TILTED_FACETS
+/** Light neither goes through the surface nor is reflected above it, by a coat with a normal of its own. */
+bool onlyReflects(int material, uint flags, uint model) {
+    if (model != 0u) return model != MODEL_DIELECTRIC + 1u && model != MODEL_THIN_DIELECTRIC + 1u;
+    return materialRow(material, 8).y == 0.0 && materialRow(material, 10).x == 0.0;
+}
+#endif
+
 SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3 throughput) {
     const int material = s.triangle.material, g = s.triangle.g;
     const vec3 wo = -direction;
@@ -133,7 +156,16 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
         surfaceEdges(s, e1, e2);
         normal = side * bumpedNormal(material, g, s.b, uv, side * normal, e1, e2);
     }
+    vec3 seenAlong = wo;
+#ifdef TILTED_FACETS
+    bsdf.folds = normal == s.shading || !onlyReflects(material, flags, bsdf.model);
+    bsdf.facets = tiltedFacets(s.face, normal);
+    bsdf.facetKey = hashCombine(hashCombine(floatBitsToUint(choice), floatBitsToUint(direction.x)), floatBitsToUint(direction.y));
+    normal = bsdf.folds ? bentTowards(normal, wo) : bsdf.facets.tilted;
+    if (!bsdf.folds) seenAlong = seenByTilted(bsdf.facets, wo, unitFloat(bsdf.facetKey));
+#else
     normal = bentTowards(normal, wo);
+#endif
 
     if (HAS_GLTF) {
         int channel = 1;
@@ -160,7 +192,7 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
         y = cross(normal, x);
     }
     bsdf.frame = mat3(x, y, normal);
-    bsdf.wo = wo * bsdf.frame;
+    bsdf.wo = seenAlong * bsdf.frame;
     bsdf.wo.z = max(bsdf.wo.z, 1e-6);
     if (HAS_GLTF && HAS_CLEARCOAT) {
         vec3 coat = s.shading;
@@ -187,16 +219,41 @@ ScatterValue localValue(SurfaceBsdf bsdf, vec3 wi) {
     return v;
 }
 
-/** A direction drawn; what it is worth, but for mirrors, comes from surfaceValues. */
-SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
+/** A local direction drawn; what it is worth, but for mirrors, comes from localValue. */
+ScatterSample localDirection(SurfaceBsdf bsdf, vec3 u) {
     ScatterSample chosen = noSample();
     if (HAS_GLTF && bsdf.model == 0u) {
         if (HAS_SPECULAR)
-            chosen = gltfSample(bsdf.gltf, bsdf.wo, vec3(u, choice));
+            chosen = gltfSample(bsdf.gltf, bsdf.wo, u);
         else
-            chosen = ScatterSample(cosineHemisphere(u), vec3(0.0), 1.0);
+            chosen = ScatterSample(cosineHemisphere(u.xy), vec3(0.0), 1.0);
     }
-    if (HAS_MODELS && bsdf.model != 0u) chosen = modelDirection(bsdf.other, bsdf.wo, vec3(u, choice));
+    if (HAS_MODELS && bsdf.model != 0u) chosen = modelDirection(bsdf.other, bsdf.wo, u);
+    return chosen;
+}
+
+#ifdef TILTED_FACETS
+#include "shaders/scattering/facet_walk.glsl"
+
+/** The first of the directions drawn, local. */
+SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
+    const ScatterSample chosen = localDirection(bsdf, vec3(u, choice));
+    return SurfaceSample(chosen.direction, chosen.weight, chosen.density, !bsdf.unlit && chosen.density != 0.0);
+}
+
+SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
+                           inout SurfaceSample next) {
+    const FacetWalk walk = walkFacets(bsdf, bsdf.facets, bsdf.folds, bsdf.facetKey, toLight, asks, lightDensity,
+                                      ScatterSample(next.direction, next.weight, next.density));
+    const bool goes = next.goes && maxComponent(walk.weight) > 0.0;
+    next = SurfaceSample(walk.direction, walk.weight, walk.density, goes);
+    return SurfaceValue(maxComponent(walk.lit) > 0.0 ? 1.0 : 0.0, walk.lit);
+}
+#else
+
+/** A direction drawn; what it is worth, but for mirrors, comes from surfaceValues. */
+SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choice) {
+    const ScatterSample chosen = localDirection(bsdf, vec3(u, choice));
     SurfaceSample r;
     r.direction = bsdf.frame * chosen.direction;
     const float height = dot(s.face, r.direction);
@@ -210,7 +267,8 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
 
 /** Values of a direction to a light, where one `asks`, and of the direction drawn: each of the lobe there, and of what
  * is mirrored to it. One loop, not unrolled: the code of all materials is in the kernel once. */
-SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, inout SurfaceSample next) {
+SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
+                           inout SurfaceSample next) {
     ScatterValue lit = noScattering(), drawn = noScattering();
     const int ways = HAS_TILTED_LOBES ? 2 : 1;
     [[dont_unroll]] for (int i = asks ? 0 : ways; i < 2 * ways; ++i) {
@@ -231,4 +289,5 @@ SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const
     next.goes = next.goes && max(max(next.weight.x, next.weight.y), next.weight.z) > 0.0;
     return SurfaceValue(lit.density, lit.density > 0.0 ? lit.value / lit.density : vec3(0.0));
 }
+#endif
 #endif

@@ -127,16 +127,18 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     }
     LightSample light;
     light.direction = s.face;
+    light.density = 0.0;
     if (LIGHT_COUNT > 0) {
         path.lightPlace = lightPlace(s.position, lightSide(bsdf, s));
         light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
     }
-    const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, next);
+    const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, WHITTED ? 0.0 : light.density, next);
 
     shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if (LIGHT_COUNT > 0) {
         // Without rays that could meet the light there is nothing to weigh against.
-        const float weight = light.density > 0.0 && !WHITTED ? light.density / (light.density + scattered.density) : 1.0;
+        const bool weighs = light.density > 0.0 && !WHITTED && !WEIGHS_LIGHT;
+        const float weight = weighs ? light.density / (light.density + scattered.density) : 1.0;
         shadow.origin = leaving(s, light.direction);
         shadow.radiance = path.throughput * scattered.weight * light.radiance * (scattered.density * weight);
         shadow.target = light.triangles;

@@ -71,6 +71,11 @@ struct PathTracer::Impl {
         skipped_ = scene_.info().skipped;
         if (scene_.info().materialFeatures != 0)
             materialDefines_["SURFACE_MATERIALS"] = fmt::format("0x{:x}u", scene_.info().materialFeatures);
+        const std::uint32_t maps = pack::kNormalMapFeature | pack::kBumpFeature;
+        if (options_.normalMapping == NormalMapping::Facets && (scene_.info().materialFeatures & maps) != 0) {
+            assert(!options_.hemisphere && "directions are not the surface's own");
+            materialDefines_["TILTED_FACETS"] = "1";
+        }
         if (!camera_.texels.empty()) table_.emplace(makeBuffer(device, "pathtrace.camera", camera_.texels));
         assert((scene_.info().motionKeys == 0 || options_.shutter != ShutterTimes{}) && "no time to move in");
         unrolled_ = scene_.info().nodeCount == 0 && scene_.info().triangleCount > 0;

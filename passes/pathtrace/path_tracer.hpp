@@ -44,6 +44,7 @@ struct PathTraceOptions {
     bool whitted = false;                         ///< paths go on from mirrors and smooth refraction only
     bool hemisphere = false;                      ///< directions are uniform over the hemisphere
     double roulette = 3, survival = 0;            ///< see RenderOptions
+    NormalMapping normalMapping = NormalMapping::Folded;  ///< Facets: not with `hemisphere`
     SamplerKind sampler = SamplerKind::Sobol;
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them
     PixelFilter filter = PixelFilter::Box;

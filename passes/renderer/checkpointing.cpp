@@ -43,6 +43,7 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"pixel filter", std::to_string(int(options.filter))},
             {"integrator", std::to_string(int(options.integrator))},
             {"roulette", fmt::format("{} {}", options.roulette, options.survival)},
+            {"normal mapping", std::to_string(int(options.normalMapping))},
             {"patches",
              options.integrator == Integrator::Radiosity ? std::to_string(options.radiosityPatches) : "none"},
             {"sampler", std::to_string(int(options.sampler))},

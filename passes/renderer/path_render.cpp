@@ -288,6 +288,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
     if (result.radiosity) result.maxDepth = 0;
     result.whitted = options.integrator == Integrator::Whitted;
     result.hemisphere = options.integrator == Integrator::Hemisphere;
+    result.normalMapping = options.normalMapping;
     if (result.hemisphere) result.nextEventEstimation = false;
     result.roulette = options.roulette;
     result.survival = options.survival;

@@ -107,6 +107,10 @@ void check(const RenderOptions& options) {
            fmt::format("{}", options.roulette), "give 0.001 or more");
     refuse(!(options.survival >= 0 && options.survival <= 1), "survival", fmt::format("{}", options.survival),
            "give a chance of up to 1, or 0 for none");
+    refuse(options.normalMapping == NormalMapping::Facets &&
+               (options.pipeline == Pipeline::Raster || options.integrator == Integrator::Hemisphere ||
+                options.integrator == Integrator::AmbientOcclusion),
+           "normalMapping", "there is no light to follow between facets", "leave it out");
     refuse(options.radiosityPatches == 0 || options.radiosityPatches > kMostPatches, "radiosityPatches",
            fmt::format("{} patches", options.radiosityPatches), "give 1 to 2048");
     refuse(options.integrator == Integrator::Radiosity && (options.maxDepth >= 0 || options.bounces >= 0),

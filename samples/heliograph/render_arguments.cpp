@@ -113,6 +113,10 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
         if (options.integrator == Integrator::AmbientOcclusion && command.count("--environment") > 0) {
             throw CLI::ValidationError("--environment", "has no effect on --integrator ao; leave it out");
         }
+        if (options.normalMapping == NormalMapping::Facets && isLocal) {
+            throw CLI::ValidationError("--normal-mapping",
+                                       "facets is there for integrators that follow light");
+        }
         if (options.integrator == Integrator::Whitted && !options.nextEventEstimation) {
             throw CLI::ValidationError("--no-nee", "leaves --integrator whitted without direct light");
         }
@@ -132,9 +136,10 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
-         {"--time", "--max-error", "--adaptive", "--denoise", "--error-map", "--max-depth", "--filter",
-          "--sampler", "--integrator", "--patches", "--roulette", "--survival", "--lights", "--no-nee",
-          "--accelerator", "--scheduler", "--bounces", "--checkpoint", "--resume"}) {
+         {"--time",        "--max-error", "--adaptive", "--denoise",    "--error-map",
+          "--max-depth",   "--filter",    "--sampler",  "--integrator", "--patches",
+          "--roulette",    "--survival",  "--lights",   "--no-nee",     "--normal-mapping",
+          "--accelerator", "--scheduler", "--bounces",  "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,

@@ -173,6 +173,10 @@ void addPathOptions(CLI::App* command, RenderArguments& arguments) {
          {"independent", SamplerKind::Independent}},
         "sobol (default): Owen-scrambled; sobol-blue: error as blue noise over the screen; "
         "halton; stratified; independent");
+    addChoice<NormalMapping>(
+        command, "--normal-mapping", options.normalMapping,
+        {{"folded", NormalMapping::Folded}, {"facets", NormalMapping::Facets}},
+        "Normals that maps tilt: folded (default), no light lost, fast; facets: reciprocal too, slower");
     addChoice<LightChoice>(command, "--lights", options.lights,
                            {{"adaptive", LightChoice::Adaptive},
                             {"power", LightChoice::Power},

@@ -4,8 +4,7 @@
  * albedo.
  */
 #include "engine/core/shared.hpp"
-#include "tests/accuracy/path_render.hpp"
-#include "tests/accuracy/path_scenes.hpp"
+#include "tests/accuracy/plates.hpp"
 
 #include <heliograph/verify.hpp>
 
@@ -20,76 +19,6 @@ namespace helio::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::uint32_t kPlate = 8;  ///< pixels across
-
-/** A row of unit plates at z = 0 that face +z, and a parallel view of them at an angle. */
-struct Plates {
-    SceneBuilder b;
-    std::vector<std::string> names;
-
-    /** A plate of this material at the next place; uvs as a picture has them, v down. */
-    int add(const std::string& name, const Material& material) {
-        b.scene.materials.push_back(material);
-        const float x = float(names.size());
-        const int instance = b.quad({x, -20, 0}, {x + 1, -20, 0}, {x + 1, 20, 0}, {x, 20, 0},
-                                    int(b.scene.materials.size()) - 1);
-        Primitive& primitive = b.scene.meshes[std::size_t(instance)].primitives[0];
-        primitive.texcoords = {{{0, 1}, {1, 1}, {1, 0}, {0, 1}, {1, 0}, {0, 0}}};
-        names.push_back(name);
-        return instance;
-    }
-    void view(double degrees) {
-        const double angle = degrees * kPi / 180, middle = 0.5L * double(names.size());
-        Camera camera;
-        camera.perspective = false;
-        camera.ymag = 0.5f;
-        b.scene.cameras = {camera};
-        const glm::vec3 back(0, -std::sin(angle), std::cos(angle)), up(0, std::cos(angle), std::sin(angle));
-        Node eye;
-        eye.camera = 0;
-        eye.matrix = glm::mat4(glm::vec4(1, 0, 0, 0), glm::vec4(up, 0), glm::vec4(back, 0),
-                               glm::vec4(glm::vec3(middle, 0, 0) + 20.0f * back, 1));
-        b.scene.nodes.push_back(eye);
-        b.scene.roots.push_back(int(b.scene.nodes.size()) - 1);
-    }
-    Traced render(std::uint32_t samples, bool nextEvent = true) const {
-        PathTraceOptions options;
-        options.size = {kPlate * std::uint32_t(names.size()), kPlate};
-        options.sampler = SamplerKind::Independent;
-        options.nextEventEstimation = nextEvent;
-        return trace(b.scene, options, samples);
-    }
-};
-
-/** One plate of a picture, its rim left out. */
-Estimate plate(const Traced& image, std::size_t index, int channel = 0) {
-    return estimate(image, channel, [&](std::size_t i) {
-        const std::size_t x = i % image.width, y = i / image.width;
-        return x / kPlate == index && x % kPlate != 0 && x % kPlate != kPlate - 1 && y != 0 &&
-               y != kPlate - 1;
-    });
-}
-
-void expectMean(const Estimate& e, double truth, double within, const std::string& what) {
-    EXPECT_LT(std::abs(e.mean - truth), 4 * e.error + 1e-5L)
-        << what << ": " << e.mean << " +- " << e.error << ", not " << truth;
-    EXPECT_LT(e.error, within) << what << ": too noisy to tell";
-}
-
-Material gltf(glm::vec3 color, float metallic, float roughness) {
-    Material m;
-    m.baseColor = glm::vec4(color, 1);
-    m.metallic = metallic;
-    m.roughness = roughness;
-    return m;
-}
-Material model(Scattering::Model kind) {
-    Material m;
-    m.scattering = Scattering{};
-    m.scattering->model = kind;
-    return m;
-}
-
 /** Mean over the numbers that draw visible normals of a reflectance by cosine to the normal. */
 double facetAlbedo(double cosine, glm::dvec2 alpha, const std::function<double(double)>& reflectance) {
     const glm::dvec3 wo(std::sqrt(1 - cosine * cosine), 0, cosine);
@@ -279,55 +208,6 @@ TEST(Furnace, LosslessMaterialsVanish) {
     }
 }
 
-/** A part of a lobe that a normal tilts under the surface is mirrored at it: however steep the map, towards
- * the viewer, across or away, a surface that loses no light shows as much as is around it. */
-TEST(Furnace, NormalMapsOfAnyTiltLoseNothing) {
-    Plates p;
-    Scene& scene = p.b.scene;
-    Material facets = model(Scattering::Model::Conductor);
-    facets.scattering->n = glm::vec3(0.01f);
-    facets.scattering->k = glm::vec3(100);
-    facets.scattering->multipleScattering = true;
-    facets.scattering->alpha = glm::vec2(0.6f);
-    Material white = gltf(glm::vec3(1), 0, 1);
-    white.specular = 0;
-    std::array materials = {white, model(Scattering::Model::Mirror), facets};
-    for (const double tilt : {20.0L, 45.0L, 70.0L, 85.0L, 89.9L}) {
-        for (const double turn : {0.0L, 90.0L, 200.0L}) {
-            const double sine = std::sin(tilt * kPi / 180);
-            const glm::dvec3 n(sine * std::cos(turn * kPi / 180), sine * std::sin(turn * kPi / 180),
-                               std::cos(tilt * kPi / 180));
-            const glm::vec3 texel = 0.5f * glm::vec3(n) + 0.5f;
-            scene.images.push_back({"tilt", 1, 1, std::vector<float>{texel.x, texel.y, texel.z, 1}});
-            Texture texture;
-            texture.image = int(scene.images.size()) - 1;
-            scene.textures.push_back(texture);
-            for (std::size_t i = 0; i < materials.size(); ++i) {
-                materials[i].normalTexture.texture = int(scene.textures.size()) - 1;
-                p.add(std::array{"white", "mirror", "facets"}[i] + std::string(" tilted by ") +
-                          std::to_string(int(tilt)) + " towards " + std::to_string(int(turn)),
-                      materials[i]);
-            }
-        }
-    }
-    scene.environment = Environment{glm::vec3(1), -1};
-    for (const double angle : {0.0L, 50.0L, 85.0L}) {
-        Plates seen = p;
-        seen.view(angle);
-        const Traced image = seen.render(64);
-        EXPECT_EQ(image.rejected, 0u);
-        for (std::size_t i = 0; i < p.names.size(); ++i) {
-            if (i % 3 != 2) {
-                expectMean(plate(image, i), 1, 1e-4L, p.names[i]);
-            } else {
-                const Estimate e = plate(image, i);
-                EXPECT_NEAR(e.mean, 1, 1e-3L + 4.5L * e.error) << p.names[i] << " at " << angle;
-                EXPECT_LT(e.error, 0.03L);
-            }
-        }
-    }
-}
-
 /** Glass spheres, faceted: light goes round inside, all of it gets out. */
 TEST(Furnace, GlassSpheresVanish) {
     for (bool frosted : {false, true}) {
@@ -418,56 +298,6 @@ TEST(Glass, SnellsWindow) {
     EXPECT_NEAR(angle(double(first)) - angle(double(last + 1)), 97.213252783L, 0.1L);
     const double r = shared64::fresnelDielectric(double(1), 1 / double(1.333f));
     EXPECT_NEAR(image.mean[image.height / 2].x, (1 - r) * double(1.333f) * double(1.333f), 0.1L);
-}
-
-/** Normal maps: red leans along the tangent (+u), green against v. Light from one direction tells which. */
-TEST(NormalMaps, LeanAlongTheTextureAndLoseNothing) {
-    Plates p;
-    Scene& scene = p.b.scene;
-    // (0.6, 0, 0.8) and (0, 0.6, 0.8).
-    scene.images.push_back({"u", 1, 1, std::vector<float>{0.8f, 0.5f, 0.9f, 1}});
-    scene.images.push_back({"v", 1, 1, std::vector<float>{0.5f, 0.8f, 0.9f, 1}});
-    for (int image : {0, 1}) {
-        Texture t;
-        t.image = image;
-        scene.textures.push_back(t);
-    }
-    Material m = gltf(glm::vec3(1), 0, 1);
-    m.specular = 0;
-    m.normalTexture.texture = 0;
-    p.add("u", m);
-    m.normalTexture.texture = 1;
-    p.add("v", m);
-    m.normalTexture.texture = 0;
-    const int given = p.add("tangents given", m);
-    Primitive& primitive = scene.meshes[std::size_t(given)].primitives[0];
-    primitive.normals.assign(6, glm::vec3(0, 0, 1));
-    primitive.tangents.assign(6, glm::vec4(0, -1, 0, 1));
-    PunctualLight sun;
-    sun.type = PunctualLight::Type::Directional;
-    sun.intensity = glm::vec3(1);
-    scene.lights.push_back(sun);
-    Node node;
-    node.light = 0;
-    scene.nodes.push_back(node);
-    scene.roots.push_back(int(scene.nodes.size()) - 1);
-    const std::size_t sunNode = scene.nodes.size() - 1;
-    p.view(10);
-    // Light from (sin a, 0, cos a). Low light also reaches the lean normal by its mirror image under the
-    // surface.
-    for (double lift : {40 * kPi / 180, 75 * kPi / 180}) {
-        scene.nodes[sunNode].rotation = glm::angleAxis(float(lift), glm::vec3(0, 1, 0));
-        const Traced image = p.render(8);
-        const glm::dvec3 l(std::sin(lift), 0, std::cos(lift));
-        const auto truth = [&](const glm::dvec3& n) {
-            return (std::max(double(0), glm::dot(n, l)) +
-                    std::max(double(0), glm::dot(n, glm::dvec3(l.x, l.y, -l.z)))) /
-                   kPi;
-        };
-        expectMean(plate(image, 0), truth({0.6L, 0, 0.8L}), 1e-6L, "u");
-        expectMean(plate(image, 1), truth({0, 0.6L, 0.8L}), 1e-6L, "v");
-        expectMean(plate(image, 2), truth({0, -0.6L, 0.8L}), 1e-6L, "tangents given");
-    }
 }
 
 /** Alpha: a blended plate shows itself by alpha and what is behind by the rest, a mask all or nothing; both

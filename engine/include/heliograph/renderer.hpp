@@ -40,6 +40,13 @@ enum class LightChoice : std::uint8_t { Adaptive, Power, Uniform };
  * found faster: Megakernel (docs/benchmarks.md). The picture is the same bit for bit. */
 enum class Scheduler : std::uint8_t { Auto, Megakernel, Wavefront };
 
+/** How the path tracer shows a normal that a map tilts; no light is lost either way. Folded: what the tilted
+ * lobe sends under the surface is mirrored at it; fast, but not reciprocal, as plain shading normals are not.
+ * Facets: the surface is made of facets along the normal and of upright mirrors between them (Schuessler et
+ * al. 2017), between which light is followed: reciprocal, and slower. Materials that light goes through and
+ * those with a clear coat are folded still. */
+enum class NormalMapping : std::uint8_t { Folded, Facets };
+
 /** State of a running render, for progress displays. */
 struct Progress {
     std::string stage;          ///< "load", "compile" (before and after set-up), "render"
@@ -155,6 +162,7 @@ struct RenderOptions {
     LightChoice lights = LightChoice::Adaptive;
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
     Scheduler scheduler = Scheduler::Auto;                ///< of the path pipeline; the same
+    NormalMapping normalMapping = NormalMapping::Folded;  ///< of the path pipeline
     std::uint32_t seed = 0;
     std::string camera;     ///< name or index; empty for the first
     double frameTime = 0;   ///< seconds; the scene is shown as posed() makes it
