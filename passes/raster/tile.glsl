@@ -1,8 +1,8 @@
 // The tile kernel: a workgroup owns 16x16 pixels and one segment of the tile's lists; an invocation owns ROWS rows of
 // two columns, in registers, and eight neighbours a strip. The invocations of a subgroup set up a triangle each, keep
-// those that may touch the subgroup's strips, and then draw these all together, handing the set-ups round by
-// shuffles. No barriers, and no atomics but for segments after the first and images of odd width (TILE_SHARED): even
-// masked out, they cost more than drawing.
+// those that may touch the subgroup's strips and that none which covers them hides, and then draw these all together,
+// handing the set-ups round by shuffles. No barriers, and no atomics but for segments after the first and images of odd
+// width (TILE_SHARED): even masked out, they cost more than drawing.
 #ifndef PASSES_RASTER_TILE_GLSL
 #define PASSES_RASTER_TILE_GLSL
 #include "shaders/raster/view.glsl"
@@ -82,6 +82,31 @@ bool mayTouch(TileTriangle t, ivec2 first, ivec2 extent) {
     return (most.x | most.y | most.z) >= 0;
 }
 
+/// Whether all pixels of such a rectangle are inside all three edges.
+bool covers(TileTriangle t, ivec2 first, ivec2 extent) {
+    ivec3 least = t.edge + t.right * first.x + t.down * first.y + min(t.right, ivec3(0)) * extent.x +
+                  min(t.down, ivec3(0)) * extent.y;
+    return (least.x | least.y | least.z) >= 0;
+}
+
+/// Depth codes between which a triangle stays in such a rectangle.
+struct DepthRange {
+    int farthest, nearest;
+};
+
+DepthRange depthRange(TileTriangle t, ivec2 first, ivec2 extent) {
+    double start = t.depth + t.depthRight * double(first.x) + t.depthDown * double(first.y);
+    double across = t.depthRight * double(extent.x), along = t.depthDown * double(extent.y);
+    // A dozen sums of a pixel's depth round by 2^-53 of their largest term each.
+    double slack = 1e-14LF * (abs(t.depth) + 16.0LF * (abs(t.depthRight) + abs(t.depthDown)));
+    double least = start + lesser(across, 0.0LF) + lesser(along, 0.0LF) - slack;
+    double most = start + greater(across, 0.0LF) + greater(along, 0.0LF) + slack;
+    // A plane seen edge-on may have no finite slopes.
+    bool finite = slack <= 1e300LF;
+    return DepthRange(finite ? clamp(depthCode(least), t.low, t.high) : t.low,
+                      finite ? clamp(depthCode(most), t.low, t.high) : t.high);
+}
+
 /// Key of a pixel; where the triangle does not cover it, one of depth 0: behind everything, and at the end a miss.
 uint64_t coveredKey(TileTriangle t, ivec3 edge, double z) {
     int depth = clamp(depthCode(z), t.low, t.high) & ~((edge.x | edge.y | edge.z) >> 31);
@@ -151,6 +176,7 @@ void main() {
 #endif
     // A workgroup may be smaller than a subgroup.
     uint chunk = min(gl_SubgroupSize, uint(LANES));
+    int covered = 0;  // some triangle covers the rectangle, and nowhere with a lesser depth code
     for (uint first = begin; first < end; first += chunk) {
         uint i = first + gl_SubgroupInvocationID;
         bool valid = i < end;
@@ -161,7 +187,13 @@ void main() {
         TileTriangle mine = setUp(unpackRecord(texelFetch(uRecords, texel), texelFetch(uRecords, texel + 1),
                                                texelFetch(uRecords, texel + 2), texelFetch(uRecords, texel + 3)),
                                   origin);
-        uint pending = subgroupBallot(valid && mayTouch(mine, corner, extent)).x;
+        bool kept = valid && mayTouch(mine, corner, extent);
+#ifndef PEEL
+        DepthRange range = depthRange(mine, corner, extent);
+        covered = max(covered, subgroupMax(kept && covers(mine, corner, extent) ? range.farthest : 0));
+        kept = kept && range.nearest >= covered;
+#endif
+        uint pending = subgroupBallot(kept).x;
         for (; pending != 0u; pending &= pending - 1u) {
             TileTriangle t = shuffleTriangle(mine, uint(findLSB(pending)));
             ivec3 edge = t.edge + t.right * at.x + t.down * at.y;
