@@ -106,7 +106,7 @@ def plot(series_list, title):
         drawn = True
         errors = [row["relmse"] for row in rows]
         spread = [[max(row["relmse"] - max(row["low"], row["relmse"] * 1e-3), 0) for row in rows],
-                  [row["high"] - row["relmse"] for row in rows]]
+                  [max(row["high"] - row["relmse"], 0) for row in rows]]
         style = dict(marker="osD^vP*X"[i % 8], markersize=4, linewidth=1.4, capsize=2, elinewidth=.8,
                      color=plt.cm.tab10(i % 10), linestyle="--" if series["biased"] else "-", label=series["method"])
         time_axes.errorbar([row["cpu"] for row in rows], errors, yerr=spread, **style)
