@@ -40,12 +40,13 @@ Positions standardPositions(std::uint32_t count) {
     }
 }
 
-/** N points of the R2 sequence (Roberts 2018): any N fills the pixel evenly. */
+/** N points of the R2 sequence (Roberts 2018): any N fills the pixel evenly. Those in the middle of it, which
+ * are symmetric about the pixel's centre: the first N would shift the picture. */
 Positions lattice(std::uint32_t count) {
     constexpr double g = 1.32471795724474602596;  // g^3 = g + 1
     Positions result;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const double x = 0.5 + (i + 1) / g, y = 0.5 + (i + 1) / (g * g);
+        const double step = i - 0.5 * (count - 1.0), x = 0.5 + step / g, y = 0.5 + step / (g * g);
         result.push_back({float(x - std::floor(x)), float(y - std::floor(y))});
     }
     return result;

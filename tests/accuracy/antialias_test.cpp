@@ -236,6 +236,20 @@ std::vector<PixelTriangle> overlapping() {
     return triangles;
 }
 
+/** A pattern whose middle is not the pixel's shifts the picture. */
+TEST(Supersampling, PatternsAreCentred) {
+    for (int count = 1; count <= 64; ++count)
+        for (const char* kind : {"ssaa", "grid"}) {
+            const auto positions = antialiasing(kind + std::to_string(count)).positions;
+            glm::dvec2 mean(0);
+            for (const auto& [x, y] : positions) {
+                EXPECT_TRUE(x >= 0 && x < 1 && y >= 0 && y < 1) << kind << count;
+                mean += glm::dvec2(x, y) / double(positions.size());
+            }
+            EXPECT_LT(glm::length(mean - 0.5), 1e-6) << kind << count;
+        }
+}
+
 TEST(Multisampling, StandardPositionsSharesAndOneShadingPerTriangleAndPixel) {
     const Scene scene = pixelScene(overlapping());
     EXPECT_EQ(
