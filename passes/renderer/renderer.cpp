@@ -285,7 +285,9 @@ void Renderer::Impl::run(const Scene& scene, const Motion& motion, RenderJob& jo
         job.result.skipped.emplace_back("meters", "they are read by integrators that follow paths of light");
     }
     job.result.warnings.insert(job.result.warnings.end(), prepared.warnings.begin(), prepared.warnings.end());
-    warnOfExtent(prepared.bounds, glm::dvec3(view.transform[3]), job.result.warnings);
+    const glm::dvec3 eye(view.transform[3]);
+    warnOfExtent(prepared.bounds, eye, job.result.warnings);
+    if (frame == 0) warnOfEye(scene, prepared.bounds, prepared.origin, eye, job.result.warnings);
     if (frame == 0 && !job.notify({.stage = "compile"})) return;
     if (path) {
         std::optional<PatchList> patches;

@@ -74,7 +74,78 @@ double extentOf(const Mesh& mesh) {
     return std::max({size.x, size.y, size.z, 0.0});
 }
 
+/** Squared distance of p from a triangle: to its nearest corner, edge or face (Ericson, "Real-Time Collision
+ * Detection", 2005, 5.1.5). */
+double squaredDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const auto toEdge = [&](const glm::dvec3& from, const glm::dvec3& to) {
+        const glm::dvec3 along = to - from, off = p - from;
+        const double squared = glm::dot(along, along);
+        const double t = squared > 0 ? std::clamp(glm::dot(off, along) / squared, 0.0, 1.0) : 0.0;
+        const glm::dvec3 left = off - t * along;
+        return glm::dot(left, left);
+    };
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double squared = glm::dot(normal, normal);
+    const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
+        return glm::dot(glm::cross(to - from, p - from), normal) >= 0;
+    };
+    if (squared > 0 && inside(a, b) && inside(b, c) && inside(c, a)) {
+        const double height = glm::dot(p - a, normal);
+        return height * height / squared;
+    }
+    return std::min({toEdge(a, b), toEdge(b, c), toEdge(c, a)});
+}
+
+double largestOf(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/** Distance of the first triangle of an instance that is nearer to the eye than kNearestEye allows; infinite
+ * for none. */
+double tooNear(const Primitive& primitive, const glm::dmat4& transform, const glm::dvec3& origin,
+               const glm::dvec3& eye) {
+    const auto corner = [&](std::size_t i) {
+        return glm::dvec3(transform * glm::dvec4(primitive.positions[primitive.indices[i]], 1.0)) - origin;
+    };
+    constexpr double none = std::numeric_limits<double>::infinity();
+    const double eyeReach = largestOf(eye);
+    const auto distance = [&](std::size_t t) {
+        const glm::dvec3 a = corner(3 * t), b = corner(3 * t + 1), c = corner(3 * t + 2);
+        const double near = kNearestEye * std::max({largestOf(a), largestOf(b), largestOf(c), eyeReach});
+        if (glm::any(glm::lessThan(eye, glm::min(a, glm::min(b, c)) - near)) ||
+            glm::any(glm::greaterThan(eye, glm::max(a, glm::max(b, c)) + near)))
+            return none;
+        const double squared = squaredDistance(eye, a, b, c);
+        return squared < near * near ? std::sqrt(squared) : none;
+    };
+    const std::size_t count = primitive.indices.size() / 3;
+    const std::size_t found = firstWhere(count, [&](std::size_t t) { return distance(t) < none; });
+    return found < count ? distance(found) : none;
+}
+
 }  // namespace
+
+void warnOfEye(const Scene& scene, const Scene::Bounds& bounds, const glm::dvec3& origin,
+               const glm::dvec3& eye, std::vector<std::string>& warnings) {
+    if (bounds.empty()) return;
+    const double most =
+        kNearestEye * std::max({largestOf(bounds.lower), largestOf(bounds.upper), largestOf(eye)});
+    if (glm::any(glm::lessThan(eye, bounds.lower - most)) ||
+        glm::any(glm::greaterThan(eye, bounds.upper + most)))
+        return;
+    for (const Instance& instance : scene.instances())
+        for (const Primitive& primitive : scene.meshes[std::size_t(instance.mesh)].primitives) {
+            if (primitive.shape) continue;
+            const double distance = tooNear(primitive, instance.transform, origin, eye);
+            if (std::isinf(distance)) continue;
+            warnings.push_back(
+                fmt::format("the camera is {:.2g} from a triangle of mesh {}, where steps of single "
+                            "precision are as large: it "
+                            "may count as behind it; move it off",
+                            distance, instance.mesh));
+            return;
+        }
+}
 
 void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings) {
     const std::vector<bool> shown = shownMeshes(scene);

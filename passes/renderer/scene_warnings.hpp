@@ -18,6 +18,12 @@ void warnOfTexcoords(const Scene& scene, std::vector<std::string>& warnings);
 inline constexpr double kLargestCoordinate = 1e11, kSmallestExtent = 1e-9;
 void warnOfExtent(const Scene::Bounds& bounds, const glm::dvec3& eye, std::vector<std::string>& warnings);
 
+/** An eye so near to a triangle, in parts of the largest coordinate of both, that single precision may take
+ * it to stand behind. Bounds and eye about the origin of what is on the device (PreparedScene). */
+inline constexpr double kNearestEye = 2e-7;
+void warnOfEye(const Scene& scene, const Scene::Bounds& bounds, const glm::dvec3& origin,
+               const glm::dvec3& eye, std::vector<std::string>& warnings);
+
 /** Meshes whose vertices lie so many of their own sizes from their origin that single precision no longer
  * holds their shape: at 1e5 sizes its steps are 1/80 of the size, and pictures of the box sample are off by
  * half a percent (tests/stability/sweeps.cpp). */

@@ -202,6 +202,32 @@ TEST(RendererInputs, VerticesTooFarFromTheirOriginAreWarnedOf) {
     }
 }
 
+TEST(RendererInputs, ACameraInASurfaceIsWarnedOf) {
+    struct Case {
+        glm::vec3 eye;
+        bool near;
+    };
+    // A square of 10 by 10 at z = -2, turned: the limit is some 1.2e-6, to its face, edges and corners.
+    for (const auto& [eye, near] : {Case{{1, 2, -2 + 2.5e-7f}, true},
+                                    {{3, -1, -2}, true},
+                                    {{5, 1, -2}, true},
+                                    {{5, 5, -2}, true},
+                                    {{1, 2, -2 + 3e-6f}, false},
+                                    {{5 + 3e-6f, 1, -2}, false},
+                                    {{0, 0, 1}, false}}) {
+        Scene scene = glowingSquare();
+        const glm::quat turn = glm::normalize(glm::quat(0.8f, 0.3f, -0.4f, 0.2f));
+        for (Node& node : scene.nodes) node.rotation = turn;
+        // The camera turns with the square, about the origin.
+        scene.nodes[1].translation = turn * eye;
+        const std::vector<std::string> said = renderer().render(scene, small(Pipeline::Raster)).warnings;
+        ASSERT_EQ(said.size(), near ? 1u : 0u) << eye.x << " " << eye.y << " " << eye.z;
+        if (near) {
+            EXPECT_NE(said[0].find("from a triangle of mesh 0"), std::string::npos) << said[0];
+        }
+    }
+}
+
 TEST(RendererInputs, TrianglesAndMeshesOutOfProportionAreWarnedOf) {
     const auto warnings = [](const Scene& scene) {
         return renderer().render(scene, small(Pipeline::Raster)).warnings;
