@@ -90,7 +90,7 @@ void addBenchCommand(CLI::App& app, Command& run) {
         "bench", "Measure error against time: scenes by methods, over doubling numbers of samples");
     command->add_option("NAME", arguments->names, "Groups, scenes, methods or SCENE/METHOD; default all");
     command->add_flag("--quick", arguments->quick,
-                      "Small pictures and short series: two minutes in place of an hour");
+                      "Small pictures and short series: two minutes in place of half an hour");
     command
         ->add_option(
             "--json", arguments->json,
