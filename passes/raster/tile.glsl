@@ -89,6 +89,19 @@ bool covers(TileTriangle t, ivec2 first, ivec2 extent) {
     return (least.x | least.y | least.z) >= 0;
 }
 
+int mostOfSubgroup(int value) {
+#if ROWS == 8
+    // Subgroups are narrow: a few shuffles cost less than the driver's loop over invocations.
+    [[unroll]] for (uint step = 1u; step < 16u; step *= 2u) {
+        int other = subgroupShuffleXor(value, step);
+        value = step < gl_SubgroupSize ? max(value, other) : value;
+    }
+    return value;
+#else
+    return subgroupMax(value);
+#endif
+}
+
 /// Depth codes between which a triangle stays in such a rectangle.
 struct DepthRange {
     int farthest, nearest;
@@ -190,7 +203,7 @@ void main() {
         bool kept = valid && mayTouch(mine, corner, extent);
 #ifndef PEEL
         DepthRange range = depthRange(mine, corner, extent);
-        covered = max(covered, subgroupMax(kept && covers(mine, corner, extent) ? range.farthest : 0));
+        covered = max(covered, mostOfSubgroup(kept && covers(mine, corner, extent) ? range.farthest : 0));
         kept = kept && range.nearest >= covered;
 #endif
         uint pending = subgroupBallot(kept).x;
