@@ -1,7 +1,7 @@
 #include "passes/renderer/raster_render.hpp"
 
-#include "engine/scene/photography.hpp"
 #include "passes/pathtrace/camera_frame.hpp"
+#include "passes/renderer/raster_samples.hpp"
 
 #include <heliograph/error.hpp>
 
@@ -39,32 +39,6 @@ void noteUnused(const RenderOptions& options, RenderResult& result) {
     if (options.samples > 1) skip("samples", why);
     if (options.filter != PixelFilter::Box) skip("pixel filter", why);
     if (options.maxDepth >= 0) skip("depth limit", "the raster pipeline shades direct light only");
-}
-
-/** Point k of Halton's sequence in bases 3 and 5, which the sets of positions in a pixel do not use. */
-glm::dvec2 haltonPoint(std::size_t k) {
-    const auto inverse = [](std::size_t base, std::size_t n) {
-        double scale = 1, sum = 0;
-        for (; n > 0; n /= base) sum += (scale /= double(base)) * double(n % base);
-        return sum;
-    };
-    return {inverse(3, k + 1), inverse(5, k + 1)};
-}
-
-/** The view of sample k: from a point of the lens, where there is one. */
-RasterView sampleView(const RasterView& view, const std::optional<ThinLens>& lens, std::size_t k) {
-    return lens ? lensView(view, *lens, lensPoint(*lens, haltonPoint(k))) : view;
-}
-
-/** Tells the application of a finished sample; false where it cancels before the last. */
-bool notifySample(RenderJob& job, std::size_t done, std::size_t all) {
-    const double fraction = double(done) / double(all);
-    return job.notify({.stage = "render",
-                       .fraction = fraction,
-                       .samples = std::uint32_t(done),
-                       .seconds = job.seconds(),
-                       .secondsLeft = job.seconds() * (1 - fraction) / fraction}) ||
-           done == all;
 }
 
 }  // namespace
@@ -214,122 +188,6 @@ void RasterSession::makeMultisamplePlan(Device& device) {
     samplePlan_ = graph.compile({.executionsInFlight = 1});
     if (masks_) masks_->draw(0);
     samplePlan_.wait(samplePlan_.execute());
-}
-
-void RasterSession::makeTemporalPlan(Device& device, const TemporalStep& step) {
-    sampleViews_.push_back(std::make_shared<RasterView>(history_->frameView(*view_)));
-    if (shade_.seesThrough()) {
-        layerView_ = std::make_shared<RasterView>(*sampleViews_[0]);
-        layers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, layerView_);
-        layers_->draw();
-        if (auxiliary_) hitLayers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, view_);
-    } else if (auxiliary_) {
-        makeCentrePlan(device);
-    }
-    Graph graph(device);
-    const RasterTriangles triangles = shade_.triangles(graph);
-    // Where surfaces let light through, the nearest one says what moves.
-    const RasterOutput visible = raster_.declare(graph, triangles, sampleViews_[0], clusters_.get());
-    const Buffer color =
-        layers_ ? graph.import(layers_->color()) : shade_.declare(graph, visible, sampleViews_[0]).color;
-    const Buffer picture =
-        history_->declare(graph, {visible.visibility, color, triangles.buffer}, sampleViews_[0]);
-    sampleColor_ = graph.readback<float>(picture);
-    counters_ = graph.readback<RasterCounters>(visible.counters);
-    samplePlan_ = graph.compile({.executionsInFlight = 1});
-    // The driver compiles at the first dispatch; later frames would lose their history to it.
-    if (step.frame == 0) samplePlan_.wait(samplePlan_.execute());
-}
-
-bool RasterSession::drawFrame(const RasterView& view, RenderJob& job, const TemporalStep& step,
-                              std::vector<float>& color) {
-    const Antialiasing& how = job.options.antialiasing;
-    const std::array<float, 2>& position = how.positions[step.frame % how.positions.size()];
-    const RasterView centre = history_->frameView(view);
-    *sampleViews_[0] = shiftedView(centre, position);
-    if (step.frame == 0) {
-        work_ = {};
-        shaded_ = corners_ = 0;
-        drawn_ = {};
-        job.beginRendering();
-    }
-    history_->beginFrame(centre, position, how.temporal.blend, step.sceneChanged);
-    if (layers_) drawLayers(*sampleViews_[0], job);
-    const Execution done = samplePlan_.execute();
-    samplePlan_.wait(done);
-    job.addTimings(samplePlan_.timings(done));
-    addWork(counters_.wait(done).at(0));
-    if (!layers_) shaded_ += std::uint64_t(centre.width) * centre.height;
-    const bool goesOn = notifySample(job, step.frame + 1, step.frames);
-    if (goesOn && step.frame + 1 < step.frames) return false;
-    color = sampleColor_.wait(done);
-    return true;
-}
-
-void RasterSession::makeLayers(Device& device) {
-    layerView_ = std::make_shared<RasterView>(*view_);
-    layers_ = std::make_unique<AlphaLayers>(device, raster_, shade_, layerView_);
-    layers_->draw();  // the driver compiles at the first dispatch
-    const std::uint32_t pixels = size_[0] * size_[1];
-    Graph graph(device);
-    const Buffer color = graph.import(layers_->color());
-    if (kind_ == Kind::Supersampling) {
-        sum_.emplace(device, "raster.sum", std::uint64_t(pixels) * 16);
-        declareAdd(graph, color, graph.import(*sum_), pixels, weight_);
-        samplePlan_ = graph.compile({.executionsInFlight = 1});
-        samplePlan_.wait(samplePlan_.execute());
-    } else {
-        color_ = graph.readback<float>(kind_ == Kind::Fxaa ? declareFxaa(graph, color, size_) : color);
-        plan_ = graph.compile({.executionsInFlight = 1});
-        plan_.wait(plan_.execute());
-    }
-}
-
-void RasterSession::drawLayers(const RasterView& view, RenderJob& job) {
-    *layerView_ = view;
-    const AlphaLayers::Drawing drawing =
-        layers_->draw([&](const std::vector<PassTiming>& times) { job.addTimings(times); });
-    drawn_.layers = std::max(drawn_.layers, drawing.layers);
-    drawn_.open = std::max(drawn_.open, drawing.open);
-    for (const RasterCounters& counters : drawing.counters) addWork(counters);
-    shaded_ += std::uint64_t(size_[0]) * size_[1] * drawing.layers;
-}
-
-void RasterSession::drawMaskedSamples(RenderJob& job) {
-    const std::uint64_t keys = rasterStride(size_[0], size_[1]) / 8;
-    drawn_ = {};
-    for (std::size_t k = 0; k < sampleCount_; ++k) {
-        *maskView_ = *sampleViews_[k];
-        const AlphaLayers::Drawing drawing =
-            masks_->draw(k * keys, [&](const std::vector<PassTiming>& times) { job.addTimings(times); });
-        drawn_.layers = std::max(drawn_.layers, drawing.layers);
-        drawn_.open = std::max(drawn_.open, drawing.open);
-        for (const RasterCounters& counters : drawing.counters) addWork(counters);
-    }
-}
-
-bool RasterSession::layeredPicture(const RasterView& view, const std::optional<ThinLens>& lens,
-                                   RenderJob& job, std::vector<float>& color) {
-    drawn_ = {};
-    if (kind_ != Kind::Supersampling) {
-        drawLayers(view, job);
-        const Execution done = plan_.execute();
-        color = color_.wait(done);
-        job.addTimings(plan_.timings(done));
-        return true;
-    }
-    const std::vector<std::array<float, 2>>& positions = job.options.antialiasing.positions;
-    for (std::size_t k = 0; k < positions.size(); ++k) {
-        drawLayers(shiftedView(sampleView(view, lens, k), positions[k]), job);
-        *weight_ = {1.0f / float(positions.size()), k == 0};
-        const Execution done = samplePlan_.execute();
-        samplePlan_.wait(done);
-        job.addTimings(samplePlan_.timings(done));
-        if (!notifySample(job, k + 1, positions.size())) return false;
-    }
-    color.resize(std::size_t(size_[0]) * size_[1] * 4);
-    sum_->download(color.data(), color.size() * 4);
-    return true;
 }
 
 void RasterSession::makeMips(Device& device) {
