@@ -328,8 +328,8 @@ Comparator packed(const partition::Input& input, const partition::Grid& grid) {
 }  // namespace
 
 std::string_view acceleratorName(AcceleratorKind kind) {
-    constexpr std::array<std::string_view, 8> names = {"auto",   "bvh",     "brute-force", "grid",
-                                                       "octree", "kd-tree", "bsp",         "sbvh"};
+    constexpr std::array<std::string_view, 9> names = {"auto",    "bvh", "brute-force", "grid", "octree",
+                                                       "kd-tree", "bsp", "sbvh",        "lbvh"};
     return names[std::size_t(kind)];
 }
 

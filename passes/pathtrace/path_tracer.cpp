@@ -328,13 +328,15 @@ PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& 
     const bool choose = options.accelerator == AcceleratorKind::Auto;
     const bool moves = options.shutter != ShutterTimes{};
     const bool splits = options.accelerator == AcceleratorKind::SplitBvh;
-    const bool tree = choose || splits || options.accelerator == AcceleratorKind::Bvh;
+    const bool onDevice = options.accelerator == AcceleratorKind::DeviceBvh;
+    const bool tree = choose || splits || onDevice || options.accelerator == AcceleratorKind::Bvh;
     const Placing placing = tree && !moves && !options.radiosity ? options.placing : Placing::Flatten;
     return {.tree = !choose || moves || options.radiosity || placing == Placing::Always ||
                     scene.triangleCount() > kWrittenOutTriangles || scene.shapeCount() > kListedShapes,
             .writeOutLargest = choose && !moves && !options.radiosity,
             .accelerator = tree ? AcceleratorKind::Bvh : options.accelerator,
             .spatialSplits = splits && !options.radiosity,  // patches are found by their slots
+            .deviceTree = onDevice,
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
             .raysFindEnvironment = !options.whitted,
             .lights = options.lights,

@@ -1,5 +1,7 @@
 #include "passes/scene/device_scene.hpp"
 
+#include "passes/tree/tree_builder.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,11 +16,18 @@ PackOptions supported(const Device& device, PackOptions options) {
     return options;
 }
 
+BuildTree builderOf(Device& device, const PackOptions& options) {
+    if (!options.deviceTree) return {};
+    return [&device](std::span<const glm::vec3> positions) {
+        return TreeBuilder(device, positions.size() / 3).build(positions);
+    };
+}
+
 }  // namespace
 
 DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Scene> later,
                          const PackOptions& options)
-    : info_(packScene(scene, later, supported(device, options))) {
+    : info_(packScene(scene, later, supported(device, options), builderOf(device, options))) {
     hostBytes_ = info_.bytes();
     const auto& environment = info_.environment;
     hasLightTables_ = !info_.lightSlots.empty();

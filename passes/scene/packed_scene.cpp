@@ -84,8 +84,8 @@ constexpr double kSpatialSplits = 0.3;
 
 /** The tree over all triangles but `left`, ascending. Its order goes by the triangles of the whole. */
 Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uint32_t>& left,
-                const BvhOptions& options) {
-    if (left.empty()) return buildBvh(positions, options);
+                const BuildTree& build) {
+    if (left.empty()) return build(positions);
     std::vector<std::uint32_t> rest;
     std::vector<glm::vec3> corners;
     rest.reserve(positions.size() / 3 - left.size());
@@ -99,7 +99,7 @@ Bvh treeWithout(std::span<const glm::vec3> positions, const std::vector<std::uin
         rest.push_back(g);
         corners.insert(corners.end(), positions.begin() + g * 3, positions.begin() + g * 3 + 3);
     }
-    Bvh tree = buildBvh(corners, options);
+    Bvh tree = build(corners);
     for (std::uint32_t& place : tree.order) place = rest[place];
     return tree;
 }
@@ -133,7 +133,7 @@ std::vector<std::uint32_t> listedShapes(std::span<const pack::Surface> surfaces,
  * slot. */
 std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> corners,
                                       std::span<const pack::Surface> surfaces, const PackOptions& options,
-                                      PackedScene& packed) {
+                                      const BuildTree& build, PackedScene& packed) {
     const std::vector<std::uint32_t> listed = listedShapes(surfaces, options);
     packed.listedShapes = std::uint32_t(listed.size());
     const std::uint32_t others = packed.triangleCount - packed.listedShapes;
@@ -159,7 +159,9 @@ std::vector<std::uint32_t> accelerate(std::span<const glm::vec3> corners,
         std::ranges::merge(out, listed, std::back_inserter(left));
         BvhOptions building;
         if (options.spatialSplits && !packed.shapesInTree) building.spatialSplits = kSpatialSplits;
-        Bvh tree = treeWithout(corners, left, building);
+        Bvh tree = treeWithout(
+            corners, left,
+            build ? build : [&](std::span<const glm::vec3> all) { return buildBvh(all, building); });
         packed.firstWrittenOut = std::uint32_t(tree.order.size());
         packed.triangleCount = packed.firstWrittenOut + std::uint32_t(left.size());
         packed.splitTree = packed.firstWrittenOut + std::uint32_t(out.size()) > others;
@@ -197,14 +199,19 @@ KernelVariant acceleratorVariant(AcceleratorKind kind) {
 }
 
 PackedScene packScene(const Scene& scene, const PackOptions& options) {
-    return packScene(scene, {}, options);
+    return packScene(scene, {}, options, {});
 }
 
 PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options) {
+    return packScene(scene, later, options, {});
+}
+
+PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options,
+                      const BuildTree& build) {
     if (options.shapesAsTriangles && scene.shapeCount() > 0) {
         PackOptions triangles = options;
         triangles.shapesAsTriangles = false;
-        PackedScene packed = packScene(withoutShapes(scene), triangles);
+        PackedScene packed = packScene(withoutShapes(scene), {}, triangles, build);
         packed.rasterSkipped.emplace_back("exact shapes", "spheres, discs and planes are shown as triangles");
         return packed;
     }
@@ -266,14 +273,14 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         PackOptions inTree = options;
         inTree.spatialSplits = false;
         inTree.writeOutLargest = false;  // nothing but trees knows which of equally near ones comes first
-        order = accelerate(corners, inWorld, inTree, packed);
+        order = accelerate(corners, inWorld, inTree, build, packed);
     } else {
         PackOptions whole = options;
         whole.spatialSplits = options.spatialSplits && keys.empty();
         order = accelerate(!keys.empty()
                                ? pack::waysBoxes(boxes.empty() ? keys : boxes)
                                : (packed.hasShapes() ? pack::treeCorners(positions, surfaces) : positions),
-                           surfaces, whole, packed);
+                           surfaces, whole, build, packed);
     }
     if (options.spatialSplits && (trees || !keys.empty() || packed.shapesInTree))
         packed.skipped.emplace_back("spatial splits",

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -75,6 +76,8 @@ struct PackOptions {
     /** Of Bvh: spatial splits are made, and triangles may have several slots. Not where the tree holds boxes
      * of shapes, placed meshes or ways of moving triangles, which cannot be cut. Hits are the same. */
     bool spatialSplits = false;
+    /** Of Bvh: the scene's tree is built on the device (passes/tree) by a DeviceScene. Hits are the same. */
+    bool deviceTree = false;
     /** Emissive surfaces get into the light table. Punctual lights always do: no ray can find them. */
     bool sampleSurfaces = true;
     /** Rays that arrive at an environment by chance bring their part of its light (multiple importance
@@ -223,6 +226,10 @@ PackedScene packScene(const Scene& scene, const PackOptions& options = {});
  * in straight lines from one to the next. Boxes of the tree hold a triangle's whole way. Surfaces that emit
  * and move, and those of their materials, are left out of the light table. Takes Bvh alone. */
 PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options);
+/** With another builder of the scene's tree than buildBvh(). */
+using BuildTree = std::function<Bvh(std::span<const glm::vec3> positions)>;
+PackedScene packScene(const Scene& scene, std::span<const Scene> later, const PackOptions& options,
+                      const BuildTree& build);
 
 namespace pack {
 // The steps of packScene, each in its own file. All append to `packed`.

@@ -194,12 +194,14 @@ void addPathOptions(CLI::App* command, RenderArguments& arguments) {
                                {{"auto", AcceleratorKind::Auto},
                                 {"bvh", AcceleratorKind::Bvh},
                                 {"sbvh", AcceleratorKind::SplitBvh},
+                                {"lbvh", AcceleratorKind::DeviceBvh},
                                 {"brute-force", AcceleratorKind::BruteForce},
                                 {"grid", AcceleratorKind::Grid},
                                 {"octree", AcceleratorKind::Octree},
                                 {"kd-tree", AcceleratorKind::KdTree},
                                 {"bsp", AcceleratorKind::Bsp}},
-                               "auto (default); bvh, sbvh (with spatial splits), brute-force, grid, octree, "
+                               "auto (default); bvh, sbvh (with spatial splits), lbvh (built on the device), "
+                               "brute-force, grid, octree, "
                                "kd-tree, bsp: same image, other times");
     addChoice<Scheduler>(command, "--scheduler", options.scheduler,
                          {{"auto", Scheduler::Auto},

@@ -1,4 +1,5 @@
 // Every accelerator gives the same hits as testing all triangles, bit by bit.
+#include "passes/tree/tree_builder.hpp"
 #include "tests/accuracy/intersection_support.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -12,8 +13,9 @@
 namespace helio::test {
 namespace {
 
-constexpr std::array kKinds = {AcceleratorKind::Bvh,    AcceleratorKind::Grid, AcceleratorKind::Octree,
-                               AcceleratorKind::KdTree, AcceleratorKind::Bsp,  AcceleratorKind::SplitBvh};
+constexpr std::array kKinds = {AcceleratorKind::Bvh,      AcceleratorKind::Grid, AcceleratorKind::Octree,
+                               AcceleratorKind::KdTree,   AcceleratorKind::Bsp,  AcceleratorKind::SplitBvh,
+                               AcceleratorKind::DeviceBvh};
 
 /** Random triangles of very uneven size and slenderness, some flat in a plane of the axes, some coincident.
  */
@@ -36,7 +38,7 @@ PackOptions packingFor(AcceleratorKind kind) {
     PackOptions options;
     if (kind == AcceleratorKind::SplitBvh)
         options.spatialSplits = true;
-    else
+    else if (kind != AcceleratorKind::DeviceBvh)
         options.accelerator = kind;
     return options;
 }
@@ -45,7 +47,12 @@ PackOptions packingFor(AcceleratorKind kind) {
 std::vector<RayHit> hitsOf(AcceleratorKind kind, const Scene& scene, RayQuestion question,
                            std::span<const Ray> rays, std::span<const std::int32_t> sources,
                            std::vector<std::uint32_t>& g) {
-    const PackedScene packed = packScene(scene, packingFor(kind));
+    BuildTree build;
+    if (kind == AcceleratorKind::DeviceBvh)
+        build = [](std::span<const glm::vec3> all) {
+            return TreeBuilder(device(), all.size() / 3).build(all);
+        };
+    const PackedScene packed = packScene(scene, {}, packingFor(kind), build);
     EXPECT_TRUE(!packed.splitTree || kind == AcceleratorKind::SplitBvh);
     EXPECT_EQ(packed.triangles.size(), packed.triangleCount * 3u);
     std::vector<std::int32_t> slotOf(scene.triangleCount(), -1);  // the last of several

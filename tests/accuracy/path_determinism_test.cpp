@@ -93,7 +93,8 @@ TEST(PathDeterminism, AcceleratorsDoNotMatter) {
     };
     const Traced tree = image(AcceleratorKind::Bvh);
     for (AcceleratorKind kind : {AcceleratorKind::BruteForce, AcceleratorKind::Grid, AcceleratorKind::Octree,
-                                 AcceleratorKind::KdTree, AcceleratorKind::Bsp, AcceleratorKind::SplitBvh})
+                                 AcceleratorKind::KdTree, AcceleratorKind::Bsp, AcceleratorKind::SplitBvh,
+                                 AcceleratorKind::DeviceBvh})
         EXPECT_EQ(hashOf(image(kind)), hashOf(tree)) << int(kind);
 
     // By default the walls are written out beside the tree, two triangles as one quadrilateral, whose

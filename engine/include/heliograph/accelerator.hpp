@@ -13,7 +13,8 @@ enum class AcceleratorKind : std::uint8_t {
     Octree,
     KdTree,
     Bsp,
-    SplitBvh  ///< a Bvh with spatial splits: slower to build, more memory, fewer boxes on a ray's way
+    SplitBvh,  ///< a Bvh with spatial splits: slower to build, more memory, fewer boxes on a ray's way
+    DeviceBvh  ///< a Bvh built on the device: of poorer quality, soon made where the device is fast
 };
 
 }  // namespace helio

@@ -1,13 +1,15 @@
 /** @file
  * Traversal against Embree's, in one interleaved run: same triangles, same rays, same threads.
  *
- *     bench_traversal [--runs 9] [--size 1280x704] [--splits] [--json FILE] [--counts MAX] [ASSET...]
+ *     bench_traversal [--runs 9] [--size 1280x704] [--tree bvh|sbvh|lbvh] [--json FILE] [--counts MAX]
+ * [ASSET...]
  *
  * Prints, per mesh and kind of ray, the median speeds and the median of the pairs' ratios (1: as fast as
  * rtcIntersect1 or rtcOccluded1), then build times and bytes per triangle. --counts adds cost against the
  * number of triangles, from 10^2 to MAX.
  */
 #include "passes/intersect/ray_intersector.hpp"
+#include "passes/tree/tree_builder.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/bench/traversal/rays.hpp"
 #include "tests/support/embree_scene.hpp"
@@ -27,6 +29,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 namespace helio::bench {
@@ -52,7 +55,7 @@ Cost costOf(const auto& work) {
 struct Options {
     int runs = 9;
     std::uint32_t width = 1280, height = 704;
-    bool splits = false;
+    std::string tree = "bvh";
 };
 
 /** World-space corners in scene order. */
@@ -84,14 +87,21 @@ std::size_t differing(RayQuestion question, const std::vector<RayHit>& ours,
 nlohmann::json measure(Device& device, const std::string& name, const Scene& scene, const Options& options) {
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     PackOptions packing;
-    packing.spatialSplits = options.splits;
-    PackedScene packed = packScene(scene, packing);
+    packing.spatialSplits = options.tree == "sbvh";
+    std::optional<TreeBuilder> builder;
+    BuildTree build;
+    if (options.tree == "lbvh")
+        build = [&](std::span<const glm::vec3> positions) {
+            if (!builder) builder.emplace(device, positions.size() / 3);
+            return builder->build(positions);
+        };
+    PackedScene packed = packScene(scene, {}, packing, build);
     const Corners corners = cornersOf(packed);
     const double triangles = double(corners.size() / 3);
     std::vector<double> ours = {packed.treeSeconds}, theirs;
     for (int run = 0; run < 3; ++run) {
         theirs.push_back(EmbreeScene(corners, threads).buildSeconds());
-        if (run > 0) ours.push_back(packScene(scene, packing).treeSeconds);
+        if (run > 0) ours.push_back(packScene(scene, {}, packing, build).treeSeconds);
     }
     const EmbreeScene embree(corners, threads);
     nlohmann::json result = {
@@ -152,7 +162,8 @@ int run(int argc, char** argv) {
     double counts = 0;
     std::vector<std::string> assets, only;
     app.add_option("--runs", options.runs, "interleaved pairs")->check(CLI::PositiveNumber);
-    app.add_flag("--splits", options.splits, "trees with spatial splits");
+    app.add_option("--tree", options.tree, "bvh; sbvh: with spatial splits; lbvh: built on the device")
+        ->check(CLI::IsMember({"bvh", "sbvh", "lbvh"}));
     app.add_option("--size", size, "pixels of the camera, multiples of 8");
     app.add_option("--json", json, "file for the results");
     app.add_option("--counts", counts, "also cost against the number of triangles, 10^2 to this");
