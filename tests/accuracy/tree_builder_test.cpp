@@ -17,7 +17,7 @@
 namespace helio::test {
 namespace {
 
-Positions placed(Positions positions, const glm::vec3& scale, const glm::vec3& at) {
+Positions scaledTo(Positions positions, const glm::vec3& scale, const glm::vec3& at) {
     for (glm::vec3& p : positions) p = scale * p + at;
     return positions;
 }
@@ -42,23 +42,23 @@ TEST(TreeBuilder, PlacesAndScalesAndDegenerateBoxes) {
         same.insert(same.end(), some.begin(), some.begin() + 3);
         points.insert(points.end(), 3, some[std::size_t(i) * 3]);
     }
-    Positions clusters = placed(some, glm::vec3(1e-6f), glm::vec3(1.0f));
+    Positions clusters = scaledTo(some, glm::vec3(1e-6f), glm::vec3(1.0f));
     clusters.insert(clusters.end(), some.begin(), some.end());
     TreeBuilder builder(device(), 6000);
     const auto expect = [&](const Positions& positions, const char* name) {
         expectSound(positions, builder.build(positions), name);
     };
     expect(same, "all of one code and box");
-    expect(placed(same, glm::vec3(0.0f), glm::vec3(3.0f)), "all in one point");
+    expect(scaledTo(same, glm::vec3(0.0f), glm::vec3(3.0f)), "all in one point");
     expect(points, "points");
-    expect(placed(some, glm::vec3(1, 0, 0), glm::vec3(0, 5, 0)), "on a line");
-    expect(placed(some, glm::vec3(1, 1, 0), glm::vec3(0.0f)), "in a plane");
+    expect(scaledTo(some, glm::vec3(1, 0, 0), glm::vec3(0, 5, 0)), "on a line");
+    expect(scaledTo(some, glm::vec3(1, 1, 0), glm::vec3(0.0f)), "in a plane");
     expect(clusters, "half of them in one cell");
-    expect(placed(some, glm::vec3(1e38f), glm::vec3(0.0f)), "huge");
-    expect(placed(some, glm::vec3(1e-30f), glm::vec3(0.0f)), "tiny");
-    expect(placed(some, glm::vec3(1e-42f), glm::vec3(0.0f)), "below normal numbers");
-    expect(placed(some, glm::vec3(1.0f), glm::vec3(1e5f, -3e4f, 1e3f)), "far away");
-    expect(placed(some, glm::vec3(1e-6f), glm::vec3(1.0f)), "small where floats are coarse");
+    expect(scaledTo(some, glm::vec3(1e38f), glm::vec3(0.0f)), "huge");
+    expect(scaledTo(some, glm::vec3(1e-30f), glm::vec3(0.0f)), "tiny");
+    expect(scaledTo(some, glm::vec3(1e-42f), glm::vec3(0.0f)), "below normal numbers");
+    expect(scaledTo(some, glm::vec3(1.0f), glm::vec3(1e5f, -3e4f, 1e3f)), "far away");
+    expect(scaledTo(some, glm::vec3(1e-6f), glm::vec3(1.0f)), "small where floats are coarse");
 }
 
 TEST(TreeBuilder, AMillionTriangles) {
