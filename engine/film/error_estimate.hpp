@@ -33,9 +33,9 @@ inline constexpr double relMseRegularizer = 0.01;
  * numerator too, is made up for by how skewed errors are. How much both matter widens the interval.
  * `reliable` is false with fewer than 8 samples; where so few pixels carry the error that the normal
  * approximation fails; where the tail of single pixels is heavy, as on caustics; where pixels beside bright
- * ones may hold what no sample has met (strayError()), as beside lamps smaller than a pixel; and where pixels
- * are so noisy that the choice of denominator matters much. Without two halves, neighbouring pixels stand in
- * and the result is not reliable. */
+ * ones may hold what no sample has met (strayError()), as beside lamps smaller than a pixel, and with fewer
+ * than 64 samples beside any lamp that matters; and where pixels are so noisy that the choice of denominator
+ * matters much. Without two halves, neighbouring pixels stand in and the result is not reliable. */
 ErrorEstimate estimateError(const FilmImages& images);
 
 /** 1 / (truth^2 + 0.01) of each pixel as estimateError() takes it: R G B and 0. */

@@ -41,10 +41,11 @@ std::uint64_t SampleSchedule::untilErrorLimit(std::uint32_t reached) const {
     // the rest.
     constexpr double slope = 1.25, smallestStep = 1.08, largestStep = 2;
     const double step = std::pow(highest_ / maxError_, 1 / slope);
-    // Below the limit already, but not believed yet: more samples, not a nearer look.
+    // Below the limit already, but not believed yet: it may be at any number, and a fifth more is allowed.
+    constexpr double disbelievedStep = 1.19;
     const bool isMet = highest_ < maxError_;
-    const double growth =
-        std::isfinite(step) && !isMet ? std::clamp(step, smallestStep, largestStep) : largestStep;
+    const double wanted = std::isfinite(step) ? std::clamp(step, smallestStep, largestStep) : largestStep;
+    const double growth = isMet ? disbelievedStep : wanted;
     const std::uint64_t end = reached + std::max<std::uint64_t>(1, std::uint64_t((growth - 1) * reached));
     // Sobol's errors are least at powers of two: none is passed by.
     return std::min(end, std::bit_ceil(std::uint64_t(reached) + 1));

@@ -199,6 +199,26 @@ TEST(ErrorEstimate, LampsBelowAPixelAreNotReliable) {
     EXPECT_TRUE(estimateError(synthesize(48, 64, flat, plain, 1).film).reliable);
 }
 
+TEST(ErrorEstimate, EdgesOfLampsAreNotReliableAtFewSamples) {
+    // A lamp of 15, and 0.06 of it in the pixels of the row above, which 8 samples see in two of five.
+    const Truth truth = [](std::uint32_t x, std::uint32_t y) {
+        const bool beside = x >= 10 && x < 38;
+        return beside && y >= 10 && y < 14 ? 15.0 : beside && y == 9 ? 0.3 + 0.06 * 15 : 0.3;
+    };
+    const Noise lamp = [](Random& random, double mean) {
+        const double rest = mean > 10 ? mean : 0.3 * (1 + 0.3 * std::normal_distribution<>()(random));
+        return rest + (mean > 1 && mean < 10 && std::uniform_real_distribution<>()(random) < 0.06 ? 15 : 0);
+    };
+    int covered = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Synthetic s = synthesize(48, 8, truth, lamp, seed);
+        const ErrorEstimate e = estimateError(s.film);
+        EXPECT_FALSE(e.reliable);
+        covered += e.low <= s.relmse && s.relmse <= e.high;
+    }
+    EXPECT_LT(covered, 17);  // there is something to warn of
+}
+
 TEST(ErrorEstimate, NoiselessIsZeroAndOneSampleGuesses) {
     const Noise none = [](Random&, double mean) { return mean; };
     const ErrorEstimate zero = estimateError(synthesize(16, 8, ramp, none, 1).film);
