@@ -7,7 +7,8 @@
 /**
  * Work of one level over all textures, 2 texels an item:
  * 0: first invocation, offset of the level in uMips, width, height
- * 1: offset of the finer level (in uMips; of level 1: texture's index), its width, its height, 0
+ * 1: offset of the finer level (in uMips; of level 1: texture's index), its width, its height, WHOLE_X | WHOLE_Y where
+ * a ripmap's level is halved along the other axis alone
  */
 layout(set = 0, binding = 0) uniform usamplerBuffer uMipWork;
 layout(set = 0, binding = 1, rgba32f) uniform imageBuffer uMips;
@@ -24,7 +25,9 @@ struct MipTexel {
     ivec2 at;
     int source;  // offset or texture
     ivec2 sourceSize;
+    BoxTaps tapsX, tapsY;
 };
+const uint WHOLE_X = 1u, WHOLE_Y = 2u;
 
 MipTexel mipTexel() {
     uint global = push.firstInvocation + gl_GlobalInvocationID.x;
@@ -47,6 +50,10 @@ MipTexel mipTexel() {
     texel.target = int(target.y + index);
     texel.source = int(source.x);
     texel.sourceSize = ivec2(source.yz);
+    texel.tapsX = boxTaps(texel.at.x, texel.sourceSize.x);
+    texel.tapsY = boxTaps(texel.at.y, texel.sourceSize.y);
+    if ((source.w & WHOLE_X) != 0u) texel.tapsX = BoxTaps(texel.at.x, vec3(1.0, 0.0, 0.0));
+    if ((source.w & WHOLE_Y) != 0u) texel.tapsY = BoxTaps(texel.at.y, vec3(1.0, 0.0, 0.0));
     return texel;
 }
 

@@ -25,13 +25,12 @@ vec4 baseTexel(uvec4 header, ivec2 at) {
 void main() {
     MipTexel texel = mipTexel();
     uvec4 header = texelFetch(uTextures, texel.source);
-    BoxTaps tapsX = boxTaps(texel.at.x, texel.sourceSize.x), tapsY = boxTaps(texel.at.y, texel.sourceSize.y);
     vec4 sum = vec4(0.0);
     [[unroll]] for (int y = 0; y < 3; ++y)
         [[unroll]] for (int x = 0; x < 3; ++x) {
             // A tap beyond the edge has weight 0.
-            ivec2 at = min(ivec2(tapsX.first + x, tapsY.first + y), texel.sourceSize - 1);
-            float weight = tapsX.weight[x] * tapsY.weight[y];
+            ivec2 at = min(ivec2(texel.tapsX.first + x, texel.tapsY.first + y), texel.sourceSize - 1);
+            float weight = texel.tapsX.weight[x] * texel.tapsY.weight[y];
             vec4 value = baseTexel(header, at);
             sum += weight == 0.0 ? vec4(0.0) : weight * value;
         }

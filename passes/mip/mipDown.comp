@@ -8,12 +8,11 @@ layout(local_size_x = 64) in;
 
 void main() {
     MipTexel texel = mipTexel();
-    BoxTaps tapsX = boxTaps(texel.at.x, texel.sourceSize.x), tapsY = boxTaps(texel.at.y, texel.sourceSize.y);
     vec4 sum = vec4(0.0);
     [[unroll]] for (int y = 0; y < 3; ++y)
         [[unroll]] for (int x = 0; x < 3; ++x) {
-            ivec2 at = min(ivec2(tapsX.first + x, tapsY.first + y), texel.sourceSize - 1);
-            float weight = tapsX.weight[x] * tapsY.weight[y];
+            ivec2 at = min(ivec2(texel.tapsX.first + x, texel.tapsY.first + y), texel.sourceSize - 1);
+            float weight = texel.tapsX.weight[x] * texel.tapsY.weight[y];
             vec4 value = imageLoad(uMips, texel.source + at.y * texel.sourceSize.x + at.x);
             sum += weight == 0.0 ? vec4(0.0) : weight * value;
         }

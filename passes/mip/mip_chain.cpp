@@ -20,6 +20,8 @@ constexpr std::uint32_t kFloat = 1u << 5;
 constexpr std::uint32_t kMipmaps = 1u << 6;
 constexpr std::uint32_t kLinear = 1u << 7;
 constexpr std::uint32_t kNormals = 1u << 8;
+// As in passes/mip/mip.glsl.
+constexpr std::uint32_t kWholeX = 1, kWholeY = 2;
 
 /** A level that fills a workgroup's row and has so many texels is made by a dispatch of its own. */
 constexpr std::size_t kNone = ~std::size_t(0);
@@ -70,16 +72,10 @@ std::uint32_t mipLevelCount(std::uint32_t width, std::uint32_t height) {
     return std::uint32_t(std::bit_width(std::max(width, height)));
 }
 
-MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
+MipLayout::MipLayout(std::span<const glm::uvec4> textures, bool ripmaps) {
     // Chains of distinct texels: (how they are read, offset) -> first texture that uses them.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> chains;
-    struct Chain {
-        std::uint32_t texture;
-        Size size;
-        std::uint64_t offset;  // of its newest level
-        std::size_t two;       // of the wide work of the level before that makes the next too; kNone
-    };
-    std::vector<Chain> open;
+    std::vector<std::uint32_t> firsts;
     table.resize(textures.size(), glm::uvec4(0, 1, 0, 0));
     for (std::uint32_t t = 0; t < textures.size(); ++t) {
         const glm::uvec4& header = textures[t];
@@ -93,8 +89,33 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
         }
         table[t] = {std::uint32_t(table.size()), count, 0, 0};
         table.resize(table.size() + count - 1);
-        open.push_back({t, {header.y, header.z}, 0, kNone});
+        if (ripmaps) {
+            const auto across = std::uint32_t(std::bit_width(header.y)),
+                       down = std::uint32_t(std::bit_width(header.z));
+            table[t].z = std::uint32_t(table.size());
+            table[t].w = across;
+            table.resize(table.size() + std::size_t(across) * down);
+        }
+        firsts.push_back(t);
     }
+    ripmaps ? layRipmaps(textures, firsts) : layMips(textures, firsts);
+}
+
+void MipLayout::checkTexels() const {
+    if (texels > (1ull << 27))
+        throw InputError("", "textures", fmt::format("mip levels need more than {} texels", 1u << 27),
+                         "reduce their sizes");
+}
+
+void MipLayout::layMips(std::span<const glm::uvec4> textures, const std::vector<std::uint32_t>& chains) {
+    struct Chain {
+        std::uint32_t texture;
+        Size size;
+        std::uint64_t offset;  // of its newest level
+        std::size_t two;       // of the wide work of the level before that makes the next too; kNone
+    };
+    std::vector<Chain> open;
+    for (const std::uint32_t t : chains) open.push_back({t, {textures[t].y, textures[t].z}, 0, kNone});
     for (std::uint32_t level = 1; !open.empty(); ++level) {
         Level step{.firstItem = std::uint32_t(work.size() / 2)};
         std::uint64_t invocations = 0;
@@ -124,9 +145,7 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
             chain.size = size;
             chain.offset = texels;
             texels += count;
-            if (texels > (1ull << 27))
-                throw InputError("", "textures", fmt::format("mip levels need more than {} texels", 1u << 27),
-                                 "reduce their sizes");
+            checkTexels();
         }
         step.invocations = std::uint32_t(invocations);
         levels.push_back(std::move(step));
@@ -135,8 +154,49 @@ MipLayout::MipLayout(std::span<const glm::uvec4> textures) {
     }
 }
 
-MipChains::MipChains(Device& device, std::span<const glm::uvec4> textures)
-    : layout_(textures),
+void MipLayout::layRipmaps(std::span<const glm::uvec4> textures, const std::vector<std::uint32_t>& chains) {
+    // Level (i, j) is halved i times along x, j times along y: from (i, j - 1), or from (i - 1, 0). What is i
+    // + j halvings away is made in step i + j.
+    const auto levelOf = [&](std::uint32_t t, std::uint32_t i, std::uint32_t j) -> glm::uvec4& {
+        return table[table[t].z + j * table[t].w + i];
+    };
+    bool open = !chains.empty();
+    for (std::uint32_t sum = 1; open; ++sum) {
+        Level step{.firstItem = std::uint32_t(work.size() / 2)};
+        std::uint64_t invocations = 0;
+        for (const std::uint32_t t : chains) {
+            const std::uint32_t across = table[t].w, down = std::uint32_t(std::bit_width(textures[t].z));
+            for (std::uint32_t j = 0; j < down && j <= sum; ++j) {
+                const std::uint32_t i = sum - j;
+                if (i >= across) continue;
+                const Size finer{textures[t].y >> (j > 0 ? i : i - 1), textures[t].z >> (j > 0 ? j - 1 : 0)};
+                const Size size{textures[t].y >> i, textures[t].z >> j};
+                const std::uint32_t source = sum == 1 ? t
+                                             : j > 0  ? levelOf(t, i, j - 1).x
+                                                      : levelOf(t, i - 1, 0).x;
+                work.emplace_back(std::uint32_t(invocations), std::uint32_t(texels), size.width, size.height);
+                work.emplace_back(source, finer.width, finer.height, j > 0 ? kWholeX : kWholeY);
+                levelOf(t, i, j) = {std::uint32_t(texels), size.width, size.height, 0};
+                const std::uint64_t count = std::uint64_t(size.width) * size.height;
+                invocations += count;
+                texels += count;
+                ++step.items;
+                checkTexels();
+            }
+        }
+        step.invocations = std::uint32_t(invocations);
+        open = step.items > 0;
+        if (open) levels.push_back(std::move(step));
+    }
+    for (const std::uint32_t t : chains) {
+        const std::uint32_t across = table[t].w, down = std::uint32_t(std::bit_width(textures[t].z));
+        for (std::uint32_t k = 1; k < table[t].y; ++k)
+            table[table[t].x + k - 1] = levelOf(t, std::min(k, across - 1), std::min(k, down - 1));
+    }
+}
+
+MipChains::MipChains(Device& device, std::span<const glm::uvec4> textures, bool ripmaps)
+    : layout_(textures, ripmaps),
       table_(makeBuffer(device, "mip.table", atLeastOne(layout_.table))),
       work_(makeBuffer(device, "mip.work", atLeastOne(layout_.work))),
       mips_(device, "mip.levels", std::max<std::uint64_t>(layout_.texels, 1) * 16) {}

@@ -22,8 +22,10 @@ std::uint32_t mipLevelCount(std::uint32_t width, std::uint32_t height);
 /** Where levels lie; the layout of shaders/texture/mip_table.glsl and of passes/mip/mip.glsl. Host only. */
 struct MipLayout {
     /** From packed textures (offset, width, height, flags). Textures without the mipmap flag get no levels,
-     * those that share their texels share the levels. Throws InputError beyond 2^27 texels in all. */
-    explicit MipLayout(std::span<const glm::uvec4> textures);
+     * those that share their texels share the levels. `ripmaps`: levels halved so often along x and so often
+     * along y, every pair; they take three times the texels of the base, and mip levels are among them.
+     * Throws InputError beyond 2^27 texels in all. */
+    explicit MipLayout(std::span<const glm::uvec4> textures, bool ripmaps = false);
 
     std::vector<glm::uvec4> table;
     std::vector<glm::uvec4> work;
@@ -40,12 +42,17 @@ struct MipLayout {
     };
     std::vector<Level> levels;  ///< 1, 2, ...
     std::uint64_t texels = 0;   ///< of all levels from 1
+
+private:
+    void layMips(std::span<const glm::uvec4> textures, const std::vector<std::uint32_t>& chains);
+    void layRipmaps(std::span<const glm::uvec4> textures, const std::vector<std::uint32_t>& chains);
+    void checkTexels() const;
 };
 
 /** Mip levels on the device. Must outlive the plans it is declared in. */
 class MipChains {
 public:
-    MipChains(Device& device, std::span<const glm::uvec4> textures);
+    MipChains(Device& device, std::span<const glm::uvec4> textures, bool ripmaps = false);
 
     /** Whether any texture has levels to make. */
     bool needed() const { return layout_.texels > 0; }
@@ -58,8 +65,7 @@ public:
     const MipLayout& layout() const { return layout_; }
 
 private:
-    void declareWide(Graph& graph, const std::vector<Binding>& textures, std::size_t level,
-                     Buffer mips);
+    void declareWide(Graph& graph, const std::vector<Binding>& textures, std::size_t level, Buffer mips);
 
     MipLayout layout_;
     DeviceBuffer table_, work_, mips_;

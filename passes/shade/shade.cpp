@@ -74,8 +74,10 @@ ShadePipeline::ShadePipeline(Device& device, DeviceScene& scene, const Scene::Bo
       scene_(scene),
       filter_(scene.info().textures.empty() ? TextureFilter::Bilinear : filter),
       shading_(shading),
-      mips_(device, filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
-                                                        : std::span<const glm::uvec4>()),
+      mips_(device,
+            filter_ >= TextureFilter::Trilinear ? std::span<const glm::uvec4>(scene.info().textures)
+                                                : std::span<const glm::uvec4>(),
+            filter_ == TextureFilter::Ripmap),
       shadowKind_(shadows.kind),
       shadows_(device, scene.info().lights, shadowedLights(scene.info()), bounds, shadows),
       surfaceLights_(std::uint32_t(scene.info().surfaceLightChances.size())),

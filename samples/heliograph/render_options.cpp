@@ -235,9 +235,10 @@ void addRasterOptions(CLI::App* command, RenderArguments& arguments) {
                               {"bspline", TextureFilter::BSpline},
                               {"trilinear", TextureFilter::Trilinear},
                               {"anisotropic", TextureFilter::Anisotropic},
-                              {"ewa", TextureFilter::Ewa}},
+                              {"ewa", TextureFilter::Ewa},
+                              {"ripmap", TextureFilter::Ripmap}},
                              "nearest, bilinear, bicubic, bspline, trilinear (default), "
-                             "anisotropic, ewa");
+                             "anisotropic, ewa, ripmap");
     addChoice<DepthFormat>(command, "--depth", options.depthFormat,
                            {{"reversed", DepthFormat::Reversed},
                             {"float", DepthFormat::Float},

@@ -1,5 +1,5 @@
-// Texture filters over a pixel's footprint, all in full floats: nearest, bilinear, two bicubics, trilinear, anisotropic
-// and the elliptical weighted average.
+// Texture filters over a pixel's footprint, all in full floats: nearest, bilinear, two bicubics, trilinear, anisotropic,
+// the elliptical weighted average and ripmaps.
 #ifndef SHADERS_TEXTURE_FILTERS_GLSL
 #define SHADERS_TEXTURE_FILTERS_GLSL
 
@@ -7,7 +7,7 @@
 
 layout(constant_id = 127) const int TEXTURE_FILTER = 4;  ///< FILTER_*: the order of helio::TextureFilter
 const int FILTER_NEAREST = 0, FILTER_BILINEAR = 1, FILTER_CATMULL_ROM = 2, FILTER_BSPLINE = 3, FILTER_TRILINEAR = 4,
-          FILTER_ANISOTROPIC = 5, FILTER_EWA = 6;
+          FILTER_ANISOTROPIC = 5, FILTER_EWA = 6, FILTER_RIPMAP = 7;
 
 /// (u, v) in texels of a level, even repeats taken out first, which keeps the fraction's bits.
 vec2 texelPosition(uvec4 header, ivec2 size, vec2 uv) {
@@ -152,6 +152,30 @@ vec4 sampleEwa(int texture, vec2 uv, vec2 dx, vec2 dy) {
     return sum / max(weights, 1e-30);
 }
 
+/// Level (i, j) of a ripmap, bilinear. The base is at uMips's place -1.
+vec4 sampleRipLevel(uvec4 header, uvec4 chain, ivec2 level, vec2 uv) {
+    uvec4 place = texelFetch(uMipTable, int(chain.z) + level.y * int(chain.w) + level.x);
+    bool isBase = level == ivec2(0);
+    return sampleMipLevel(header, isBase ? -1 : int(place.x), isBase ? ivec2(header.yz) : ivec2(place.yz), uv);
+}
+
+/// Means over rectangles along the texture's axes, linear between levels: as wide and as high as the pixel's parallelogram
+/// where that lies along the axes, else of the same variances.
+vec4 sampleRipmap(int texture, vec2 uv, vec2 dx, vec2 dy) {
+    uvec4 header = texelFetch(uTextures, texture), chain = texelFetch(uMipTable, texture);
+    if (chain.w == 0u) return sampleTexture(texture, uv);
+    vec2 size = vec2(header.yz), tx = clamp(dx * size, -1e9, 1e9), ty = clamp(dy * size, -1e9, 1e9);
+    vec2 squared = tx * tx + ty * ty;
+    vec2 last = vec2(ivec2(int(chain.w) - 1, findMSB(header.z)));
+    vec2 level = min(vec2(squared.x > 1.0 ? 0.5 * realLog2(squared.x) : 0.0, squared.y > 1.0 ? 0.5 * realLog2(squared.y) : 0.0), last);
+    if (level == vec2(0.0)) return sampleTexture(texture, uv);
+    ivec2 fine = ivec2(level), coarse = min(fine + 1, ivec2(last));
+    vec2 f = level - vec2(fine);
+    vec4 a = sampleRipLevel(header, chain, fine, uv), b = sampleRipLevel(header, chain, ivec2(coarse.x, fine.y), uv);
+    vec4 c = sampleRipLevel(header, chain, ivec2(fine.x, coarse.y), uv), d = sampleRipLevel(header, chain, coarse, uv);
+    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+}
+
 /// Linear colour at (u, v) whose derivatives over one pixel are dx and dy, by the filter that was chosen.
 vec4 sampleFiltered(int texture, vec2 uv, vec2 dx, vec2 dy) {
     vec4 value = vec4(0.0);
@@ -162,6 +186,7 @@ vec4 sampleFiltered(int texture, vec2 uv, vec2 dx, vec2 dy) {
     if (TEXTURE_FILTER == FILTER_TRILINEAR) value = sampleTrilinear(texture, uv, dx, dy);
     if (TEXTURE_FILTER == FILTER_ANISOTROPIC) value = sampleAnisotropic(texture, uv, dx, dy);
     if (TEXTURE_FILTER == FILTER_EWA) value = sampleEwa(texture, uv, dx, dy);
+    if (TEXTURE_FILTER == FILTER_RIPMAP) value = sampleRipmap(texture, uv, dx, dy);
     return value;
 }
 

@@ -5,7 +5,8 @@
 
 /**
  * First one texel a texture: place of its level 1 in this table, number of levels (the base counted, 1 where it has
- * no mips), 0, 0. Then one texel a level: offset of its first texel in uMips, width, height, 0.
+ * no mips), and of a ripmap the place of its level (0, 0) and how many there are along x (0: none). Then one texel a
+ * level: offset of its first texel in uMips, width, height, 0; of a ripmap's (0, 0), the base, all 0.
  */
 layout(set = 0, binding = 30) uniform usamplerBuffer uMipTable;
 

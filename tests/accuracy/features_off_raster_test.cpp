@@ -82,6 +82,7 @@ TEST(RasterFeaturesOff, NoCodeAndNoBindingsForWhatIsNotAskedFor) {
         {"soft shadows", lit, {.shadows = Shadows::Kind::Soft}, "uShadowMaps"},
         {"anisotropic filtering", textured, {.filter = TextureFilter::Anisotropic}, nullptr},
         {"EWA filtering", textured, {.filter = TextureFilter::Ewa}, nullptr},
+        {"ripmaps", textured, {.filter = TextureFilter::Ripmap}, nullptr},
         {"Gouraud's shading", lit, {.shading = Shading::Gouraud}, "uCornerLight"},
     };
     for (const Case& c : cases) {

@@ -172,6 +172,72 @@ TEST(MipChain, EveryTexelAndMeanOfEverySize) {
     EXPECT_LT(worstMean, 2e-7);
 }
 
+/** `halve` along one axis alone. */
+Level halveAlong(const Level& fine, bool x) {
+    Level strip{x ? fine.width : fine.height, x ? fine.height : fine.width, {}};
+    const auto at = [&](const Level& level, std::uint32_t i, std::uint32_t j) {
+        return level.texels[std::size_t(x ? j : i) * level.width + (x ? i : j)];
+    };
+    const std::uint32_t n = strip.width, half = n / 2;
+    Level result{x ? half : fine.width, x ? fine.height : half, {}};
+    result.texels.resize(std::size_t(result.width) * result.height);
+    for (std::uint32_t j = 0; j < strip.height; ++j) {
+        Level row{n, 1, {}};
+        for (std::uint32_t i = 0; i < n; ++i) row.texels.push_back(at(fine, i, j));
+        const Level halved = halve(row);
+        for (std::uint32_t i = 0; i < half; ++i)
+            result.texels[std::size_t(x ? j : i) * result.width + (x ? i : j)] = halved.texels[i];
+    }
+    return result;
+}
+
+TEST(MipChain, RipmapsHalveEveryAxisByItself) {
+    std::mt19937 random(3);
+    Packed packed;
+    const std::array<std::uint32_t, 2> sizes[] = {{64, 32}, {37, 1}, {1, 6}, {17, 33}, {1, 1}, {255, 101}};
+    for (const auto& [width, height] : sizes) {
+        packed.add(width, height, false, random);
+        packed.add(width, height, true, random);
+    }
+    MipChains chains(device(), packed.headers, true);
+    const auto values = makeMips(packed, chains);
+    const MipLayout& layout = chains.layout();
+    double worst = 0;
+    std::size_t compared = 0;
+    for (std::size_t t = 0; t < packed.bases.size(); ++t) {
+        Level wide = packed.bases[t];
+        const std::uint32_t across = layout.table[t].w;
+        if (wide.texels.size() == 1) {
+            EXPECT_EQ(across, 0u);
+            continue;
+        }
+        for (std::uint32_t i = 0; i < across; ++i) {
+            if (i > 0) wide = halveAlong(wide, true);
+            Level level = wide;
+            for (std::uint32_t j = 0; level.height > 0; ++j) {
+                if (i + j > 0) {
+                    const glm::uvec4 place = layout.table[layout.table[t].z + j * across + i];
+                    ASSERT_EQ(place.y, level.width);
+                    ASSERT_EQ(place.z, level.height);
+                    for (std::size_t k = 0; k < level.texels.size(); ++k, ++compared)
+                        for (int c = 0; c < 4; ++c)
+                            worst = std::max(worst, std::abs(values[place.x + k][c] - level.texels[k][c]) /
+                                                        std::max(1e-3, level.texels[k][c]) / (i + j));
+                    // A mip level is one of them.
+                    if (i == j) {
+                        EXPECT_EQ(layout.table[layout.table[t].x + i - 1], place);
+                    }
+                }
+                if (level.height == 1) break;
+                level = halveAlong(level, false);
+            }
+        }
+    }
+    std::printf("             %zu texels, worst relative error over halvings %.2e\n", compared, worst);
+    EXPECT_LT(worst, 4e-7);
+    EXPECT_GT(compared, 50000u);
+}
+
 TEST(MipChain, OnlyTexturesThatWantLevelsGetThemAndSharedTexelsShareThem) {
     const std::vector<glm::uvec4> headers = {{0, 8, 8, kMipmapped},
                                              {0, 8, 8, kMipmapped | 1u},

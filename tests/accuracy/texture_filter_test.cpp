@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -74,7 +75,7 @@ struct Sampled {
 
 Sampled sample(const Scene& scene, TextureFilter filter, const std::vector<Query>& queries) {
     DeviceScene deviceScene(device(), scene, {.tree = false});
-    MipChains mips(device(), deviceScene.info().textures);
+    MipChains mips(device(), deviceScene.info().textures, filter == TextureFilter::Ripmap);
     {
         Graph graph(device());
         mips.declare(graph, deviceScene.bindings(graph, {"uTextures", "uTexels8", "uTexelsFloat"}),
@@ -138,8 +139,9 @@ Sampled sample(const TestTexture& texture, TextureFilter filter, const std::vect
 
 const TextureFilter kAll[] = {TextureFilter::Nearest, TextureFilter::Bilinear,  TextureFilter::CatmullRom,
                               TextureFilter::BSpline, TextureFilter::Trilinear, TextureFilter::Anisotropic,
-                              TextureFilter::Ewa};
-const char* const kNames[] = {"nearest", "bilinear", "bicubic", "bspline", "trilinear", "anisotropic", "ewa"};
+                              TextureFilter::Ewa,     TextureFilter::Ripmap};
+const char* const kNames[] = {"nearest",   "bilinear",    "bicubic", "bspline",
+                              "trilinear", "anisotropic", "ewa",     "ripmap"};
 
 class Uniform {
 public:
@@ -351,26 +353,50 @@ std::vector<Query> tiltedPlane(double roll, double texels) {
     return queries;
 }
 
-TEST(TextureFilter, ErrorAgainstTheFootprintsIntegral) {
+/** A checkerboard and octaves of noise whose power falls as 1/f^2, as in photographs: 128 texels each way. */
+std::array<TestTexture, 2> qualityTextures() {
     std::mt19937 random(9);
     std::vector<double> noise(128 * 128);
     for (double& v : noise) v = random() / 4294967296.0;
-    const auto photograph = [&](int x, int y) {
-        // Octaves of noise whose power falls as 1/f^2, as in photographs.
+    const auto photograph = [noise](int x, int y) {
         double sum = 0;
         for (int k = 0; k < 6; ++k)
             sum += noise[std::size_t((y >> k) % 128 * 128 + (x >> k) % 128)] * std::exp2(k - 6);
         return sum;
     };
-    const TestTexture textures[] = {{128, 128, [](int x, int y) { return double((x / 4 + y / 4) & 1); }},
-                                    {128, 128, photograph}};
+    return {TestTexture{128, 128, [](int x, int y) { return double((x / 4 + y / 4) & 1); }},
+            TestTexture{128, 128, photograph}};
+}
+
+TEST(TextureFilter, RipmapsFilterFootprintsAlongTheAxes) {
+    // Rectangles of 1 to 32 texels each way, wide or high: levels of powers of two have the very mean but for
+    // where their texels begin.
+    Uniform uniform(12);
+    std::vector<Query> queries(600);
+    for (Query& q : queries) {
+        q.uv = glm::vec2(uniform(0, 1), uniform(0, 1));
+        q.dx.x = float(std::exp2(uniform(0, 5)) / 128);
+        q.dy.y = float(std::exp2(uniform(0, 5)) / 128);
+    }
+    for (const TestTexture& texture : qualityTextures()) {
+        std::vector<double> exact;
+        for (const Query& q : queries) exact.push_back(integral(texture, q));
+        const double trilinear = rms(exact, sample(texture, TextureFilter::Trilinear, queries).values),
+                     ripmap = rms(exact, sample(texture, TextureFilter::Ripmap, queries).values);
+        std::printf("             along the axes: ripmap %.4f, trilinear %.4f\n", ripmap, trilinear);
+        EXPECT_LT(ripmap, 0.75 * trilinear);
+    }
+}
+
+TEST(TextureFilter, ErrorAgainstTheFootprintsIntegral) {
+    const std::array<TestTexture, 2> textures = qualityTextures();
     std::printf("             | texture | direction | filter | RMS error | ns a sample |\n");
     for (int t = 0; t < 2; ++t)
         for (const bool diagonal : {false, true}) {
             const std::vector<Query> queries = tiltedPlane(diagonal ? kPi / 4 : 0.0, 128);
             std::vector<double> exact;
             for (const Query& q : queries) exact.push_back(integral(textures[t], q));
-            double errors[7];
+            double errors[8];
             for (const TextureFilter filter : kAll) {
                 const Sampled got = sample(textures[t], filter, queries);
                 errors[int(filter)] = rms(exact, got.values);
@@ -381,6 +407,9 @@ TEST(TextureFilter, ErrorAgainstTheFootprintsIntegral) {
             const auto error = [&](TextureFilter f) { return errors[int(f)]; };
             EXPECT_LT(error(TextureFilter::Trilinear), error(TextureFilter::Bilinear));
             EXPECT_LT(error(TextureFilter::Anisotropic), error(TextureFilter::Trilinear));
+            if (!diagonal) {
+                EXPECT_LT(error(TextureFilter::Ripmap), error(TextureFilter::Trilinear));
+            }
             if (diagonal) {
                 EXPECT_LT(error(TextureFilter::Ewa), error(TextureFilter::Anisotropic));
             }

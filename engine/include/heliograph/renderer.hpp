@@ -112,7 +112,8 @@ enum class TextureFilter : std::uint8_t {
     BSpline,      ///< bicubic, smooth
     Trilinear,    ///< over mip levels
     Anisotropic,  ///< up to 16 trilinear samples along the footprint
-    Ewa           ///< elliptical weighted average: a Gaussian over the footprint's ellipse
+    Ewa,          ///< elliptical weighted average: a Gaussian over the footprint's ellipse
+    Ripmap        ///< over levels halved along u and v by themselves, for footprints along the texture's axes
 };
 
 /** How the raster pipeline shades: each pixel by its material; or by Blinn and Phong's model (kd, ks and the
