@@ -325,6 +325,59 @@ double psnr(const Image& image, const std::vector<float>& truth) {
     return -10 * std::log10(sum / double(truth.size()));
 }
 
+/** Structural similarity (Wang, Bovik, Sheikh and Simoncelli, "Image quality assessment", 2004) of the same
+ * displayed values: the mean over all windows of 11 x 11 with their Gaussian of 1.5 pixels, and over R, G and
+ * B. */
+template <typename Image>
+double ssim(const Image& image, const std::vector<float>& truth, std::size_t width) {
+    constexpr int reach = 5;
+    constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+    const auto shown = [](double x) { return std::sqrt(std::clamp(x, 0.0, 1.0)); };
+    const std::size_t height = truth.size() / 3 / width;
+    double weights[2 * reach + 1], whole = 0, sum = 0;
+    for (int i = -reach; i <= reach; ++i) whole += weights[i + reach] = std::exp(-i * i / (2 * 1.5 * 1.5));
+    std::size_t windows = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t y = reach; y + reach < height; ++y)
+            for (std::size_t x = reach; x + reach < width; ++x, ++windows) {
+                double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+                for (int j = -reach; j <= reach; ++j)
+                    for (int i = -reach; i <= reach; ++i) {
+                        const std::size_t at = ((y + std::size_t(reach + j) - reach) * width + x +
+                                                std::size_t(reach + i) - reach) *
+                                                   3 +
+                                               c;
+                        const double w = weights[i + reach] * weights[j + reach] / (whole * whole);
+                        const double u = shown(double(image[at])), v = shown(double(truth[at]));
+                        a += w * u;
+                        b += w * v;
+                        aa += w * u * u;
+                        bb += w * v * v;
+                        ab += w * u * v;
+                    }
+                sum += (2 * a * b + c1) * (2 * (ab - a * b) + c2) /
+                       ((a * a + b * b + c1) * (aa - a * a + bb - b * b + c2));
+            }
+    return sum / double(windows);
+}
+
+TEST(Upscaler, SimilarityIsThatOfItsFormula) {
+    // Of a plane of values and the same times k, plus d, the formula can be written down for every window.
+    constexpr std::size_t width = 32;
+    std::vector<float> truth(width * 24 * 3), scaled(truth.size());
+    std::mt19937 random(4);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const double v = 0.2 + 0.2 * (random() / 4294967296.0);
+        truth[i] = float(v * v);
+        scaled[i] = float((0.5 + v) * (0.5 + v));  // displayed: 0.5 more
+    }
+    EXPECT_NEAR(ssim(truth, truth, width), 1, 1e-12);
+    // Structure is kept: only means differ, of about 0.3 and 0.8.
+    EXPECT_NEAR(ssim(scaled, truth, width), (2 * 0.3 * 0.8 + 1e-4) / (0.3 * 0.3 + 0.8 * 0.8 + 1e-4), 0.003);
+    for (float& v : scaled) v = 0.04f;
+    EXPECT_LT(ssim(scaled, truth, width), 0.25);  // no structure at all
+}
+
 /** Scenes that its constants were not set on, at rest and with a camera that moves. */
 TEST(Upscaler, BeatsBilinearAndBicubicEverywhere) {
     constexpr std::array<std::uint32_t, 2> size = {96, 64}, half = {48, 32};
@@ -355,9 +408,15 @@ TEST(Upscaler, BeatsBilinearAndBicubicEverywhere) {
             const double bilinear = psnr(enlarge(small, size, 1, linear), truth.data),
                          bicubic = psnr(enlarge(small, size, 2, catmullRom), truth.data),
                          temporal = psnr(upscaled.data, truth.data);
-            fmt::print("{:18}{:8}: bilinear {:.2f}, bicubic {:.2f}, temporal {:.2f} dB\n", name,
-                       moves ? " moving" : "", bilinear, bicubic, temporal);
+            const double bilinearSsim = ssim(enlarge(small, size, 1, linear), truth.data, size[0]),
+                         bicubicSsim = ssim(enlarge(small, size, 2, catmullRom), truth.data, size[0]),
+                         temporalSsim = ssim(upscaled.data, truth.data, size[0]);
+            fmt::print(
+                "{:18}{:8}: bilinear {:.2f}, bicubic {:.2f}, temporal {:.2f} dB; SSIM {:.3f} {:.3f} {:.3f}\n",
+                name, moves ? " moving" : "", bilinear, bicubic, temporal, bilinearSsim, bicubicSsim,
+                temporalSsim);
             EXPECT_GT(temporal, std::max(bilinear, bicubic)) << name;
+            EXPECT_GT(temporalSsim, std::max(bilinearSsim, bicubicSsim)) << name;
         }
 }
 
