@@ -149,6 +149,7 @@ private:
         number(place, "heightScale", material.heightScale, -largest, largest);
         use(place, "heightTexture", material.heightTexture);
         use(place, "occlusionTexture", material.occlusionTexture);
+        use(place, "lightmapTexture", material.lightmapTexture);
         use(place, "emissiveTexture", material.emissiveTexture);
         use(place, "specularTexture", material.specularTexture);
         use(place, "specularColorTexture", material.specularColorTexture);

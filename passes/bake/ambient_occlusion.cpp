@@ -17,14 +17,6 @@ namespace {
 
 constexpr std::size_t kRaysAtOnce = 1u << 19;
 
-/** The instance of a node by name; of the first with a mesh where none is named. */
-std::size_t chosenInstance(const Scene& scene, const std::vector<Instance>& instances,
-                           const std::string& node) {
-    for (std::size_t i = 0; i < instances.size(); ++i)
-        if (node.empty() || scene.nodes[std::size_t(instances[i].node)].name == node) return i;
-    throw InputError(scene.name, "bake", fmt::format("no node '{}' has a mesh", node), "name one that has");
-}
-
 double fraction(std::uint32_t bits) {
     return (double(bits) + 0.5) * 0x1p-32;
 }
@@ -62,15 +54,9 @@ glm::dvec3 directionOf(const bake::AtlasTexel& texel, std::uint32_t k, std::uint
 
 ImageF bakeAmbientOcclusion(Device& device, const Scene& scene, const BakeOptions& options) {
     scene.validate();
-    if (options.size < 1 || options.size > 8192 || options.samples < 1 || options.samples > (1u << 16))
-        throw InputError(scene.name, "bake",
-                         fmt::format("{} texels with {} rays each", options.size, options.samples),
-                         "ask for 1 to 8192 texels and 1 to 65536 rays");
-    if (!(options.distance > 0))
-        throw InputError(scene.name, "bake", fmt::format("a distance of {}", options.distance),
-                         "give one above 0");
+    bake::check(scene, options);
     const std::vector<Instance> instances = scene.instances();
-    const std::size_t instance = chosenInstance(scene, instances, options.node);
+    const std::size_t instance = bake::chosenInstance(scene, instances, options.node);
     const std::vector<bake::AtlasTexel> texels =
         bake::atlasTexels(scene, instances[instance], options.texcoord, options.size);
 

@@ -27,6 +27,21 @@ struct Corners {
 
 }  // namespace
 
+std::size_t chosenInstance(const Scene& scene, const std::vector<Instance>& instances,
+                           const std::string& node) {
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        if (node.empty() || scene.nodes[std::size_t(instances[i].node)].name == node) return i;
+    refuse(scene, "bake", fmt::format("no node '{}' has a mesh", node), "name one that has");
+}
+
+void check(const Scene& scene, const BakeOptions& options) {
+    if (options.size < 1 || options.size > 8192 || options.samples < 1 || options.samples > (1u << 16))
+        refuse(scene, "bake", fmt::format("{} texels with {} rays each", options.size, options.samples),
+               "ask for 1 to 8192 texels and 1 to 65536 rays");
+    if (!(options.distance > 0))
+        refuse(scene, "bake", fmt::format("a distance of {}", options.distance), "give one above 0");
+}
+
 std::vector<AtlasTexel> atlasTexels(const Scene& scene, const Instance& instance, int texcoord,
                                     std::uint32_t size) {
     const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];

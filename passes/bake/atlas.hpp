@@ -1,5 +1,6 @@
 #pragma once
 /** @file Which point of a surface each texel of an image shows. */
+#include <heliograph/bake.hpp>
 #include <heliograph/image.hpp>
 #include <heliograph/scene.hpp>
 
@@ -23,6 +24,13 @@ struct AtlasTexel {
  * bakeAmbientOcclusion() says. */
 std::vector<AtlasTexel> atlasTexels(const Scene& scene, const Instance& instance, int texcoord,
                                     std::uint32_t size);
+
+/** The instance of a node by name; of the first with a mesh where none is named. Throws InputError. */
+std::size_t chosenInstance(const Scene& scene, const std::vector<Instance>& instances,
+                           const std::string& node);
+
+/** Refuses numbers out of range, by InputError. */
+void check(const Scene& scene, const BakeOptions& options);
 
 /** Texels that nothing covers take the mean of the covered about them, ring by ring. */
 void fillGaps(std::vector<float>& values, std::vector<bool> covered, std::uint32_t size);

@@ -3,18 +3,31 @@
 /** @file
  * Paths that a meter starts, in place of a camera's (METER). A meter of irradiance or flux is a first scattering: cosine
  * directions over its hemisphere, and light sampling, weighted against each other; what it gathers is E / pi. One of
- * radiance or intensity sees along its axis alone. The image's pixels are strata of what is drawn.
+ * radiance or intensity sees along its axis alone. The image's pixels are strata of what is drawn, or meters of irradiance of
+ * their own (METER_POINTS).
  */
+
+#ifdef METER_POINTS
+layout(set = 0, binding = 54) uniform samplerBuffer uMeterPoints;  ///< two texels a pixel: its meter's place and direction
+#endif
 
 /** Loop turns of shadow rays of meters that are not counted in the budget yet. */
 uint meterTurns = 0u;
 
 /** `parameters.camera`: the middle of the meter; right and up are half its sides, w of forward is 1 for a hemisphere. */
 Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
-    const CameraFrame meter = parameters.camera;
+    CameraFrame meter = parameters.camera;
+#ifdef METER_POINTS
+    const int at = 2 * int(pixel.y * parameters.size.x + pixel.x);
+    meter.origin = texelFetch(uMeterPoints, at);
+    meter.forward = vec4(texelFetch(uMeterPoints, at + 1).xyz, 1.0);
+#endif
     const vec3 normal = meter.forward.xyz;
     const bool hemisphere = meter.forward.w > 0.5;
-    const vec2 u = (vec2(pixel) + sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER)) / vec2(parameters.size);
+    vec2 u = sample2D(SAMPLER_KIND, numbers, DIMENSION_FILTER);
+#ifndef METER_POINTS
+    u = (vec2(pixel) + u) / vec2(parameters.size);
+#endif
     const vec2 across = 2.0 * (hemisphere ? sample2D(SAMPLER_KIND, numbers, DIMENSION_LENS) : u) - 1.0;
     Path path;
     path.origin = meter.origin.xyz + meter.right.xyz * across.x + meter.up.xyz * across.y;

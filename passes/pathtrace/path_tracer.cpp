@@ -173,6 +173,13 @@ struct PathTracer::Impl {
             bounces.push_back({"uBounces", bounces_->import(graph)});
         }
         if (options_.meter) defines["METER"] = "1";
+        std::vector<Binding> points;
+        if (!options_.meterPoints.empty()) {
+            assert(options_.meterPoints.size() == std::size_t(options_.size[0]) * options_.size[1] * 2);
+            defines["METER_POINTS"] = "1";
+            meterPoints_.emplace(makeBuffer(device_, "pathtrace.meterPoints", options_.meterPoints));
+            points.push_back({"uMeterPoints", graph.import(*meterPoints_)});
+        }
         std::vector<Binding> patches;
         if (options_.radiosity) {
             assert(options_.maxDepth == 0 && options_.patches != nullptr);
@@ -197,7 +204,7 @@ struct PathTracer::Impl {
             modifies = {{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}};
         for (const std::vector<Binding>& some :
              {scene_.bindings(graph, surfaceBuffers()), scene_.bindings(graph, buffers), cameraBinding(graph),
-              ends, patches})
+              ends, patches, points})
             reads.insert(reads.end(), some.begin(), some.end());
         modifies.insert(modifies.end(), bounces.begin(), bounces.end());
         if (wavefront_) {
@@ -305,6 +312,7 @@ struct PathTracer::Impl {
     DeviceImage state_;
     DeviceBuffer counters_;
     std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
+    std::optional<DeviceBuffer> meterPoints_;
     std::optional<BounceLayers> bounces_;
     std::optional<Wavefront> wavefront_;
     TraceParameters parameters_{};

@@ -61,6 +61,9 @@ struct PathTraceOptions {
      * pixels; a scene whose coordinates are at most `meterExtent`. */
     std::optional<Meter> meter = {};
     glm::dvec3 meterExtent{0.0};
+    /** Where not empty, each pixel has a meter of irradiance of its own: two a pixel, its place (off its
+     * surface) and the unit vector that it faces along. `meter` is one of irradiance then. */
+    std::vector<glm::vec4> meterPoints = {};
     /** Surfaces shine with what `patches` has solved and give off nothing else; for a maxDepth of 0. */
     bool radiosity = false;
     RadiosityPass* patches = nullptr;  ///< need not be there for packOptions()

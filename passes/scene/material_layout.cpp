@@ -136,7 +136,10 @@ std::vector<SampledTexture> sampledTextures(const Material& m, bool occlusion) {
     add(m.anisotropyTexture, kAnisotropyRow, false, bits & kAnisotropyTextureFeature);
     add(m.iridescenceTexture, kIridescenceRow, false, bits & kIridescenceTextureFeature);
     add(m.iridescenceThicknessTexture, kIridescenceThicknessRow, false, bits & kIridescenceTextureFeature);
-    add(m.occlusionTexture, kOcclusionRow, false, occlusion && m.occlusionStrength > 0.0f && !m.unlit);
+    // A lightmap has what hides its surface in it.
+    add(m.lightmapTexture, kOcclusionRow, false, occlusion && !m.unlit);
+    add(m.occlusionTexture, kOcclusionRow, false,
+        occlusion && m.occlusionStrength > 0.0f && !m.unlit && !m.lightmapTexture);
     return result;
 }
 

@@ -164,7 +164,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
     const bool anyColors =
         anyPrimitive(scene, instances, [](const Primitive& p) { return !p.colors.empty(); });
     const bool anyTexcoords = anyPrimitive(scene, instances, [&](const Primitive& p) {
-        return texcoordSets(materialOf(scene, p), packed.occlusionTextures)[0] >= 0;
+        return texcoordSets(materialOf(scene, p), packed.bakedTextures())[0] >= 0;
     });
     const bool anyTangents = anyPrimitive(
         scene, instances, [&](const Primitive& p) { return needsTangents(materialOf(scene, p)); });
@@ -207,7 +207,7 @@ std::vector<glm::vec3> geometry(const Scene& scene, const glm::dvec3& origin, Pa
             }
             const Material& look = materialOf(scene, primitive);
             packed.tiltedLobes |= !primitive.normals.empty() && hasWideLobes(look);
-            const std::array<int, 2> sets = texcoordSets(look, packed.occlusionTextures);
+            const std::array<int, 2> sets = texcoordSets(look, packed.bakedTextures());
             const bool hasTangents = anyTangents && needsTangents(look);
             const std::vector<glm::vec4> cornerTangents =
                 hasTangents ? tangents(primitive, tangentSet(look)) : std::vector<glm::vec4>();

@@ -45,6 +45,7 @@ constexpr std::uint32_t kTurnedFacets = 1u << 5;
 constexpr std::uint32_t kBeckmann = 1u << 6;
 constexpr std::uint32_t kSchlick = 1u << 7;
 constexpr std::uint32_t kCompensated = 1u << 8;
+constexpr std::uint32_t kLightmap = 1u << 9;
 constexpr std::uint32_t kModelShift = 16;
 
 /** Packs textures once each for every way they are read, as colour or as data, and gives their place. */
@@ -213,7 +214,7 @@ void addParameters(const Material& m, Rows& rows) {
                 m.iridescenceIor};
     // Without a texture the film's thickness is the largest.
     rows[13] = {m.iridescenceThicknessTexture ? m.iridescenceThicknessMinimum : m.iridescenceThicknessMaximum,
-                m.iridescenceThicknessMaximum, m.occlusionStrength, 0.0f};
+                m.iridescenceThicknessMaximum, m.lightmapTexture ? 0.0f : m.occlusionStrength, 0.0f};
     if (m.solid) {
         rows[45] = {m.solid->first, glm::uintBitsToFloat(std::uint32_t(m.solid->pattern) + 1u)};
         rows[46] = {m.solid->second, m.solid->scale};
@@ -233,6 +234,7 @@ std::uint32_t flagsOf(const Material& m) {
     if (m.alphaMode == AlphaMode::Blend) flags |= kBlend;
     if (m.unlit) flags |= kUnlit;
     if (m.thickness <= 0.0f) flags |= kThin;
+    if (m.lightmapTexture && !m.unlit) flags |= kLightmap;
     if (m.scattering) {
         const Scattering& s = *m.scattering;
         flags |= (std::uint32_t(s.model) + 1u) << kModelShift;
@@ -267,12 +269,13 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
             packed.tiltedLobes |=
                 (features & (kNormalMapFeature | kBumpFeature)) != 0 && hasWideLobes(material);
             packed.materialFeatures |= features == 0 ? kDiffuseFeatures : features;
-            const std::array<int, 2> sets = texcoordSets(material, packed.occlusionTextures);
-            for (const SampledTexture& texture : sampledTextures(material, packed.occlusionTextures)) {
-                const int index =
-                    textures.add(*texture.use, texture.color, texture.use == &material.emissiveTexture,
-                                 texture.use == &material.normalTexture ||
-                                     texture.use == &material.clearcoatNormalTexture);
+            const std::array<int, 2> sets = texcoordSets(material, packed.bakedTextures());
+            for (const SampledTexture& texture : sampledTextures(material, packed.bakedTextures())) {
+                const int index = textures.add(
+                    *texture.use, texture.color,
+                    texture.use == &material.emissiveTexture || texture.use == &material.lightmapTexture,
+                    texture.use == &material.normalTexture ||
+                        texture.use == &material.clearcoatNormalTexture);
                 rows[texture.row] = transformRow(*texture.use, 0, std::uint32_t(index));
                 rows[texture.row + 1] = transformRow(*texture.use, 1, texcoordSlot(sets, *texture.use));
             }

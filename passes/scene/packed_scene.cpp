@@ -43,6 +43,7 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
         const Material& m = scene.materials[i];
         if (m.occlusionTexture && !occlusion)
             named.emplace("occlusion textures", "occlusion is computed, not read");
+        if (m.lightmapTexture && !occlusion) named.emplace("lightmaps", "light is computed, not read");
         if (m.thicknessTexture) named.emplace("thickness textures", "thickness is that of the surfaces");
         if (pack::namesTooManySets(m, occlusion))
             named.emplace("third texture coordinate sets", "a material's textures read two sets at most");
@@ -54,15 +55,23 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
         const bool shines = (features & (kSpecularFeature | kModelFeatures)) != 0;
         skipIf(shines, "gloss of area lights",
                "the raster pipeline shades gloss of punctual lights and of surroundings");
+        skipIf(m.emission != glm::vec3(0.0f) && m.alphaMode != AlphaMode::Opaque, "alpha of lamps",
+               "the raster pipeline lights as if emissive surfaces were opaque");
+        skipIf(shines && m.lightmapTexture, "gloss of surfaces with lightmaps",
+               "a lightmap holds irradiance, of which the raster pipeline shows diffuse light");
         const bool through = m.scattering && (m.scattering->model == Scattering::Model::Dielectric ||
                                               m.scattering->model == Scattering::Model::ThinDielectric);
         skipIf((features & kTransmissionFeature) != 0 || through, "transmission",
                "the raster pipeline shows no light that goes through surfaces");
-        const std::size_t filtered = std::size_t(bool(m.baseColorTexture)) +
-                                     std::size_t(m.emissiveTexture && m.emission != glm::vec3(0.0f));
-        skipIf(sampledTextures(m, occlusion).size() > filtered, "filters of material textures",
-               "the raster pipeline filters base colour and emission; other textures are bilinear at their "
-               "base level");
+        const std::size_t filtered =
+            std::size_t(bool(m.baseColorTexture)) +
+            std::size_t(m.emissiveTexture && m.emission != glm::vec3(0.0f)) +
+            std::size_t(m.normalTexture && (features & kNormalMapFeature) != 0) +
+            std::size_t(m.clearcoatNormalTexture && (features & kClearcoatTextureFeature) != 0);
+        skipIf(
+            sampledTextures(m, occlusion).size() > filtered, "filters of material textures",
+            "the raster pipeline filters base colour, emission and normals; other textures are bilinear at "
+            "their base level");
         for (const std::string& what : m.unsupported) named.emplace(what, "not in the material model");
     }
     return result;
@@ -220,6 +229,9 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         options.occlusion && scene.environment && std::ranges::any_of(scene.materials, [](const Material& m) {
             return m.occlusionTexture && m.occlusionStrength > 0.0f && !m.unlit;
         });
+    packed.lightmaps = options.occlusion && std::ranges::any_of(scene.materials, [](const Material& m) {
+                           return m.lightmapTexture && !m.unlit;
+                       });
     std::vector<pack::Surface> surfaces;
     const bool places = later.empty() && options.tree && options.accelerator == AcceleratorKind::Bvh;
     pack::PlacedMeshes placed = places ? pack::choosePlaced(scene, options) : pack::PlacedMeshes();

@@ -89,7 +89,8 @@ struct PackOptions {
     Placing placing = Placing::Flatten;
     /** Triangles take the place of shapes. */
     bool shapesAsTriangles = false;
-    /** Occlusion textures are packed: they dim the light of surroundings that nothing is traced to. */
+    /** Occlusion textures are packed, which dim the light of surroundings that nothing is traced to, and
+     * lightmaps. */
     bool occlusion = false;
     /** PackedScene::diffuseEnvironment is made. */
     bool diffuseEnvironment = false;
@@ -196,6 +197,9 @@ struct PackedScene {
     bool texturedEmission = false;  ///< emission varies over some surface in use
     bool baseColorTextures = false;
     bool occlusionTextures = false;  ///< of PackOptions::occlusion, where there are surroundings to dim
+    bool lightmaps = false;  ///< of PackOptions::occlusion: some material shows the light of a texture
+    /** Whether textures of light at rest are packed. */
+    bool bakedTextures() const { return occlusionTextures || lightmaps; }
     bool alphaMasks = false, alphaBlends = false;  ///< modes of materials in use
     bool solidTextures = false;                    ///< some base colour varies over space
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded

@@ -208,6 +208,10 @@ ShadePipeline::Common ShadePipeline::declareCommon(Graph& graph, std::shared_ptr
         common.model["OCCLUSION"] = "1";
         common.spec.merge(scene_.constants({"HAS_LINEAR_TEXTURES"}));
     }
+    if (scene_.info().lightmaps) {
+        common.model["LIGHTMAPS"] = "1";
+        common.spec.merge(scene_.constants({"HAS_LINEAR_TEXTURES"}));
+    }
     common.spec["TEXTURE_FILTER"] = filterConstant(filter_);
     common.spec["SCENE_ORDER"] = inSceneOrder();
     common.spec["ORTHOGRAPHIC"] = view->orthographic;

@@ -17,12 +17,15 @@ namespace helio::cli {
 namespace {
 
 struct BakeArguments {
-    std::string scene, output, device = "auto";
+    std::string scene, output, device = "auto", quantity = "occlusion";
     BakeOptions options;
 };
 
 int bake(BakeArguments& arguments) {
     checkImageOutput("--output", arguments.output);
+    const bool irradiance = arguments.quantity == "irradiance";
+    if (irradiance && !holdsEveryChannel(arguments.output))
+        throw CLI::ValidationError("--output", "irradiance has no largest value: name an .exr file");
     handleInterrupts();
     arguments.options.progress = [](double) { return !interrupted(); };
     const auto begin = std::chrono::steady_clock::now();
@@ -30,12 +33,13 @@ int bake(BakeArguments& arguments) {
     DeviceOptions options;
     options.device = arguments.device;
     Device device(options);
-    ImageF image = bakeAmbientOcclusion(device, scene, arguments.options);
+    ImageF image = irradiance ? bakeIrradiance(device, scene, arguments.options)
+                              : bakeAmbientOcclusion(device, scene, arguments.options);
     if (image.data.empty()) {
         say("interrupted: nothing is written");
         return Interrupted;
     }
-    double sum = 0, least = 1, most = 0;
+    double sum = 0, least = double(image.data.front()), most = least;
     for (const float value : image.data) {
         sum += double(value);
         least = std::min(least, double(value));
@@ -46,10 +50,10 @@ int bake(BakeArguments& arguments) {
         for (float& value : image.data) value = float(srgbDecode(double(value)));
     saveImage(arguments.output, image);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    printLine(
-        "wrote {}, {}x{} texels, {} rays each; ambient occlusion {:.4f} to {:.4f}, mean {:.4f}; {:.2f} s",
-        arguments.output, image.width, image.height, arguments.options.samples, least, most,
-        sum / double(image.data.size()), seconds.count());
+    printLine("wrote {}, {}x{} texels, {} {} each; {} {:.4f} to {:.4f}, mean {:.4f}; {:.2f} s",
+              arguments.output, image.width, image.height, arguments.options.samples,
+              irradiance ? "paths" : "rays", irradiance ? "irradiance (W/m^2)" : "ambient occlusion", least,
+              most, sum / double(image.data.size()), seconds.count());
     return Done;
 }
 
@@ -59,12 +63,17 @@ void addBakeCommand(CLI::App& app, Command& run) {
     auto arguments = std::make_shared<BakeArguments>();
     BakeOptions& options = arguments->options;
     CLI::App* command = app.add_subcommand(
-        "bake", "Ambient occlusion of one mesh of a scene, as a texture over its coordinates");
+        "bake", "Ambient occlusion or irradiance of one mesh of a scene, as a texture over its coordinates");
     command->add_option("SCENE", arguments->scene, "A file or sample:NAME")->required();
     command
         ->add_option("-o,--output", arguments->output,
                      "Where to write: .exr floats; .png 8 bits, as glTF's occlusionTexture takes them")
         ->required();
+    command
+        ->add_option(
+            "--quantity", arguments->quantity,
+            "occlusion (default), or irradiance: all light on the front, as render --lightmap takes it")
+        ->check(CLI::IsMember({"occlusion", "irradiance"}));
     command->add_option("--node", options.node, "Whose mesh; default the first that has one");
     command->add_option("--texcoord", options.texcoord, "Set of texture coordinates, each place with its own")
         ->check(CLI::Range(0, 7))
@@ -72,9 +81,14 @@ void addBakeCommand(CLI::App& app, Command& run) {
     command->add_option("--size", options.size, "Texels each way")
         ->check(CLI::Range(1u, 8192u))
         ->capture_default_str();
-    command->add_option("--spp", options.samples, "Rays a texel")
+    command->add_option("--spp", options.samples, "Rays or paths a texel")
         ->check(CLI::Range(1u, 65536u))
         ->capture_default_str();
+    command
+        ->add_option("--max-depth", options.maxDepth,
+                     "Of irradiance: reflections before the light arrives; default all")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--seed", options.seed, "Of irradiance");
     command
         ->add_option("--distance", options.distance, "What is farther away hides nothing; default no limit")
         ->check(CLI::PositiveNumber);

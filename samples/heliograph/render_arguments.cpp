@@ -84,8 +84,9 @@ Environment parseRadiance(const std::string& text) {
 /** Refuses options that the chosen pipeline would leave without effect on the picture. */
 void checkPipelineOptions(const CLI::App& command, const RenderOptions& options) {
     if (options.pipeline == Pipeline::Path) {
-        for (const char* option : {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter",
-                                   "--light-samples", "--depth", "--shading", "--frames", "--frame-rate"}) {
+        for (const char* option :
+             {"--shadows", "--shadow-resolution", "--light-size", "--texture-filter", "--light-samples",
+              "--depth", "--shading", "--frames", "--frame-rate", "--lightmap", "--lightmap-texcoord"}) {
             if (command.count(option) > 0) {
                 throw CLI::ValidationError(option, "is there for --pipeline raster only");
             }
@@ -198,6 +199,9 @@ void finishRenderArguments(const CLI::App& command, RenderArguments& arguments) 
         throw CLI::ValidationError("--environment-map", "says what the image of --environment is; name one");
     if (!arguments.environment.empty() && !image) options.environment = parseRadiance(arguments.environment);
     checkPipelineOptions(command, options);
+    for (const std::string& lightmap : arguments.lightmaps)
+        if (lightmap.find('=') == std::string::npos)
+            throw CLI::ValidationError("--lightmap", "'" + lightmap + "' is not NODE=FILE");
     if (!arguments.antialiasing.empty()) {
         try {
             options.antialiasing = antialiasing(arguments.antialiasing, options.seed);

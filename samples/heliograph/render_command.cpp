@@ -4,6 +4,7 @@
 #include "progress_display.hpp"
 #include "render_options.hpp"
 
+#include <heliograph/bake.hpp>
 #include <heliograph/environment.hpp>
 #include <heliograph/error.hpp>
 #include <heliograph/features.hpp>
@@ -147,6 +148,11 @@ int render(const CLI::App& command, RenderArguments& arguments) {
     Scene& scene = *loaded;
     chooseNormals(scene, arguments.normals);
     if (arguments.displacement > 0) displace(scene, arguments.displacement);
+    for (const std::string& lightmap : arguments.lightmaps) {
+        const std::size_t sign = lightmap.find('=');
+        setLightmap(scene, lightmap.substr(0, sign), arguments.lightmapTexcoord,
+                    loadImage(lightmap.substr(sign + 1)));
+    }
     if (arguments.hasEnvironmentImage) {
         options.environment = Environment{.radiance = glm::vec3(1.0f), .image = int(scene.images.size())};
         scene.images.push_back(loadTextureImage(arguments.environment));

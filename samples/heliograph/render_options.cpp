@@ -69,6 +69,17 @@ void addSceneOptions(CLI::App* command, RenderArguments& arguments) {
             "Cut each triangle that has a map of heights into N x N and move the corners by it; without "
             "this the map tilts normals")
         ->check(CLI::Range(1u, 1024u));
+    command
+        ->add_option("--lightmap", arguments.lightmaps,
+                     "NODE=FILE: irradiance that bake --quantity irradiance found for the node's mesh, which "
+                     "the raster pipeline shows in place of the diffuse light that it would find; may be "
+                     "repeated")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--lightmap-texcoord", arguments.lightmapTexcoord,
+                     "The lightmaps' set of texture coordinates")
+        ->check(CLI::Range(0, 7))
+        ->capture_default_str();
 }
 
 void addOutputOptions(CLI::App* command, RenderArguments& arguments) {

@@ -29,6 +29,8 @@ struct RenderArguments {
     Display display;
     Normals normals = Normals::File;
     std::uint32_t displacement = 0;
+    std::vector<std::string> lightmaps;  ///< NODE=FILE
+    int lightmapTexcoord = 0;
     bool noNextEvent = false, validate = false, quiet = false;
     LoadOptions load;
     RenderOptions options;

@@ -34,6 +34,12 @@ const bool HAS_OCCLUSION = true;
 const bool HAS_OCCLUSION = false;
 #endif
 
+#ifdef LIGHTMAPS
+const bool HAS_LIGHTMAPS = true;
+#else
+const bool HAS_LIGHTMAPS = false;
+#endif
+
 #ifdef CORNERS
 /// Where light is found for CORNERS corners of a triangle (1: once for all of it), two texels each: that on kd / pi, and
 /// that on ks.
@@ -59,6 +65,9 @@ struct Shaded {
     float exponent;
 #endif
     float opacity;  // what it stops of the light behind
+#ifdef LIGHTMAPS
+    bool baked;     // all its light is a lightmap's, and in `emission`
+#endif
 #ifdef OCCLUSION
     float open;     // share of the light from all around that its surroundings leave
 #endif
@@ -79,7 +88,7 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
     Surface surface = surfaceAt(source, pixel);
 
     vec4 uv = vec4(0.0), dx = vec4(0.0), dy = vec4(0.0);
-    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES || HAS_OCCLUSION || HAS_FOOTPRINT_NORMALS)
+    if (HAS_BASE_TEXTURES || HAS_EMISSION_TEXTURES || HAS_OCCLUSION || HAS_LIGHTMAPS || HAS_FOOTPRINT_NORMALS)
         footprint(g, surface, uv, dx, dy);
 #ifdef FOOTPRINT_NORMALS
     pixelX = dx;
@@ -131,6 +140,14 @@ Shaded shadePoint(ivec2 pixel, uvec2 key) {
 #if defined(CORNERS) && CORNERS == 1
     shaded.normal = surface.front ? surface.faceNormal : -surface.faceNormal;
 #endif
+#endif
+#ifdef LIGHTMAPS
+    shaded.baked = false;
+    uint flags = texelFetch(uMaterials, source.material * MATERIAL_TEXELS + 1).w;
+    if (shaded.hit && surface.front && (flags & MATERIAL_LIGHTMAP) != 0u) {
+        shaded.baked = true;
+        shaded.emission += shaded.diffuse * INV_PI * materialTexture(source.material, 47, uv).rgb;
+    }
 #endif
     shaded.faceNormal = surface.faceNormal;
     shaded.g = g;
@@ -295,6 +312,9 @@ void addLight(int light, Shaded shaded, inout vec3 irradiance, inout vec3 gloss)
 
 /// Radiance that a surface reflects of the lights push.first to push.first + push.count - 1.
 vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
+#ifdef LIGHTMAPS
+    if (shaded.baked) return vec3(0.0);
+#endif
 #ifdef BLINN_PHONG
 #ifdef CORNERS
     LightSums sums = LightSums(vec3(0.0), vec3(0.0));
@@ -326,6 +346,9 @@ vec3 reflectedLight(ivec2 pixel, Shaded shaded) {
 
 /// Radiance that a surface reflects of the surroundings.
 vec3 reflectedAmbient(Shaded shaded) {
+#ifdef LIGHTMAPS
+    if (shaded.baked) return vec3(0.0);
+#endif
 #ifdef CORNERS
     vec3 light = vec3(0.0);  // the corners' light has it
 #elif defined(SPECULAR_ENVIRONMENT) && !defined(BLINN_PHONG)

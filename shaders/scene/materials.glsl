@@ -12,7 +12,8 @@
  * 2: light sampling density per area (1/m^2), metallic, roughness, alpha cutoff
  * 3, 4: base colour texture: rows of its transform, bits of texture index | bits of slot of texture coordinates
  * 5, 6: the same of the emissive texture
- * 13: z: strength of the occlusion texture; 47, 48: that texture, of which red is read, in the raster pipeline alone
+ * 13: z: strength of the occlusion texture; 47, 48: that texture, of which red is read, or the lightmap, in the raster
+ * pipeline alone
  * 45: first colour of the solid texture, bits of its pattern (0: none); 46: second colour, features a unit
  */
 layout(set = 0, binding = 25) uniform usamplerBuffer uMaterials;
@@ -26,6 +27,7 @@ const uint MATERIAL_TURNED_FACETS = 1u << 5;  ///< widths along tangent and bita
 const uint MATERIAL_BECKMANN = 1u << 6;
 const uint MATERIAL_SCHLICK = 1u << 7;
 const uint MATERIAL_COMPENSATED = 1u << 8;    ///< light of several reflections between facets is added
+const uint MATERIAL_LIGHTMAP = 1u << 9;       ///< 47 is the texture of the irradiance on its front
 const uint MATERIAL_MODEL_SHIFT = 16u;        ///< Scattering::Model + 1; 0: glTF's
 
 /** Texel of a material's texture use at `row` (3 or 5): the texture's colour, white where there is none. */

@@ -1,9 +1,10 @@
-/** @file Row X14: baked ambient occlusion against closed forms. */
+/** @file Row X14: baked ambient occlusion and irradiance against closed forms. */
 #include "engine/scene/samples/shapes.hpp"
 #include "tests/support/renderer.hpp"
 
 #include <heliograph/bake.hpp>
 #include <heliograph/error.hpp>
+#include <heliograph/image.hpp>
 #include <heliograph/renderer.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 namespace helio::test {
@@ -195,6 +197,156 @@ TEST(Bake, TheRasterizerFetchesWhatPathsFind) {
                truth / pixels, std::sqrt(squares / pixels));
     EXPECT_NEAR(sum / truth, 1, 0.005);
     EXPECT_LT(std::sqrt(squares / pixels), 0.03);  // noise of 256 paths: about 0.02
+}
+
+/** A receiver about the origin that faces +y, and what shines on it. */
+double irradianceUnder(Primitive lamp, glm::vec3 place = glm::vec3(0)) {
+    Scene scene = sceneOf({rectangle({-0.005f, 0, 0.005f}, {0.01f, 0, 0}, {0, 0, -0.01f}), std::move(lamp)});
+    const int glow = addMaterial(scene, diffuse("glow", glm::vec3(0)));
+    scene.materials[std::size_t(glow)].emission = glm::vec3(1);
+    scene.meshes[1].primitives[0].material = glow;
+    scene.nodes[1].translation = place;
+    const ImageF image = bakeIrradiance(device(), scene, {.size = 8, .samples = 512});
+    double mean = 0;
+    for (std::size_t i = 0; i < 64; ++i) mean += double(image.data[i * 3]) / 64;
+    return mean;
+}
+
+TEST(BakeIrradiance, OfSquaresAndASphere) {
+    const auto expect = [](const char* what, double found, double truth) {
+        fmt::print("{}: {:.6f} for {:.6f}\n", what, found, truth);
+        EXPECT_NEAR(found / truth, 1, 0.005) << what;
+    };
+    expect("square of side 1 at 1", irradianceUnder(rectangle({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1})),
+           0.752274688454);
+    expect("square of side 2 at 1", irradianceUnder(rectangle({-1, 1, -1}, {2, 0, 0}, {0, 0, 2})),
+           1.740839502730);
+    Primitive sphere;
+    sphere.shape = Shape{.kind = Shape::Kind::Sphere, .radius = 1};
+    expect("sphere of radius 1 at 3", irradianceUnder(sphere, {0, 3, 0}), 0.349065850);
+    expect("the same, 60 degrees off", irradianceUnder(sphere, {3 * std::sin(std::numbers::pi / 3), 1.5, 0}),
+           0.174532925);
+}
+
+/** A cube of side 1 from the origin, seen from inside; each face has a ninth of the image. */
+Primitive room() {
+    Primitive p;
+    p.texcoords.resize(1);
+    const glm::vec3 corners[][3] = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                                    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}},
+                                    {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
+    for (std::uint32_t face = 0; face < 6; ++face) {
+        const auto& [corner, u, v] = corners[face];
+        const glm::vec2 at = glm::vec2(face % 3, face / 3) / 3.0f;
+        for (const glm::vec2& s : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)}) {
+            p.positions.push_back(corner + s.x * u + s.y * v);
+            p.texcoords[0].push_back(at + s * 0.33f);
+        }
+        for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) p.indices.push_back(face * 4 + k);
+    }
+    return p;
+}
+
+TEST(BakeIrradiance, OfAllReflectionsInAClosedRoom) {
+    // Le = 1 and reflectance 1/2 on every wall: radiance 2 everywhere, of which 1 + ... + 2^-n has up to n
+    // reflections.
+    Scene scene = sceneOf({room()});
+    const int shining = addMaterial(scene, diffuse("shining", glm::vec3(0.5f)));
+    scene.materials[std::size_t(shining)].emission = glm::vec3(1);
+    scene.meshes[0].primitives[0].material = shining;
+    for (const auto& [depth, radiance] : {std::pair{-1, 2.0}, {0, 1.0}, {1, 1.5}, {2, 1.75}}) {
+        const ImageF image = bakeIrradiance(device(), scene, {.size = 18, .samples = 64, .maxDepth = depth});
+        double sum = 0;
+        for (std::uint32_t y = 0; y < 12; ++y)
+            for (std::uint32_t x = 0; x < 18; ++x) sum += double(image.at(x, y, 1)) / (12 * 18);
+        fmt::print("depth {}: {:.5f} for {:.5f}\n", depth, sum, std::numbers::pi * radiance);
+        EXPECT_NEAR(sum / (std::numbers::pi * radiance), 1, 0.005) << depth;
+    }
+}
+
+TEST(BakeIrradiance, TheRasterizerShowsWhatPathsFind) {
+    // A grey floor with a red wall, which colours it, under a lamp and a faint sky.
+    Scene scene =
+        sceneOf({rectangle({0, 0, 1}, {2, 0, 0}, {0, 0, -2}), rectangle({0, 0, -1}, {0, 0, 2}, {0, 1, 0}),
+                 rectangle({0.5f, 1.5f, -0.5f}, {1, 0, 0}, {0, 0, 1})});
+    const int grey = addMaterial(scene, diffuse("grey", glm::vec3(0.6f))),
+              red = addMaterial(scene, diffuse("red", {0.8f, 0.1f, 0.1f})),
+              glow = addMaterial(scene, diffuse("glow", glm::vec3(0)));
+    scene.materials[std::size_t(glow)].emission = glm::vec3(2);
+    const int materials[] = {grey, red, glow};
+    for (std::size_t i = 0; i < 3; ++i) scene.meshes[i].primitives[0].material = materials[i];
+    scene.environment = Environment{glm::vec3(0.2f), -1};
+    addCamera(scene, {2.5f, 1.2f, 0.1f}, {1, 0, 0}, 40);
+
+    const ImageF baked = bakeIrradiance(device(), scene, {.node = "node 0", .size = 32, .samples = 512});
+    const std::filesystem::path file = std::filesystem::temp_directory_path() / "heliograph-lightmap.exr";
+    saveImage(file, baked);
+    RenderOptions options;
+    options.size = {40, 24};
+    options.samples = 512;
+    const RenderResult paths = renderer().render(scene, options);
+    options.pipeline = Pipeline::Raster;
+    const RenderResult live = renderer().render(scene, options);
+    setLightmap(scene, "node 0", 0, loadImage(file));
+    std::filesystem::remove(file);
+    const RenderResult mapped = renderer().render(scene, options);
+    EXPECT_EQ(takeValidationMessages(), std::vector<std::string>());
+    const std::size_t channels = paths.image.channels.size();
+    const auto first = std::size_t(paths.image.channel("R")),
+               id = std::size_t(paths.image.channel("id.instance"));
+    double squares = 0, liveSquares = 0;
+    glm::dvec3 sum(0), truth(0);
+    int pixels = 0;
+    for (std::size_t i = 0; i < 40 * 24; ++i) {
+        const std::size_t at = i * channels;
+        if (paths.image.data[at + id] != mapped.image.data[at + id]) continue;
+        if (paths.image.data[at + id] != 0) {
+            if (mapped.image.data[at + id] >= 0) {
+                EXPECT_EQ(mapped.image.data[at + first], live.image.data[at + first]);
+            }
+            continue;
+        }
+        ++pixels;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double path = paths.image.data[at + first + c], map = mapped.image.data[at + first + c];
+            sum[glm::length_t(c)] += map;
+            truth[glm::length_t(c)] += path;
+            squares += (map - path) * (map - path);
+            liveSquares += std::pow(double(live.image.data[at + first + c]) - path, 2);
+        }
+    }
+    ASSERT_GT(pixels, 150);
+    const glm::dvec3 ratio = sum / truth;
+    const double scale = (truth.x + truth.y + truth.z) / (3 * pixels);
+    fmt::print(
+        "{} pixels: mean over that of paths {:.4f} {:.4f} {:.4f}; RMS difference {:.4f} of the mean, {:.4f} "
+        "without the map\n",
+        pixels, ratio.x, ratio.y, ratio.z, std::sqrt(squares / (3 * pixels)) / scale,
+        std::sqrt(liveSquares / (3 * pixels)) / scale);
+    for (glm::length_t c = 0; c < 3; ++c) EXPECT_NEAR(ratio[c], 1, 0.01);
+    EXPECT_LT(squares, 0.1 * liveSquares);
+}
+
+TEST(BakeIrradiance, WhatItRefuses) {
+    Primitive none = rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    none.texcoords.clear();
+    Primitive twice = rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    twice.texcoords = {{{0, 0}, {1, 0}, {1, 1}, {0.5f, 0.0f}}};
+    for (const Primitive& p : {none, twice})
+        EXPECT_THROW((void)bakeIrradiance(device(), sceneOf({p}), {.size = 16, .samples = 1}), InputError);
+    Scene good = sceneOf({rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1})}), bare = sceneOf({none});
+    EXPECT_TRUE(
+        bakeIrradiance(device(), good, {.size = 4, .samples = 1, .progress = [](double) { return false; }})
+            .data.empty());
+    ImageF image{2, 2, {"R", "G", "B"}, std::vector<float>(12, 1.0f), {}};
+    EXPECT_THROW(setLightmap(good, "nobody", 0, image), InputError);
+    EXPECT_THROW(setLightmap(good, "", 1, image), InputError);
+    EXPECT_THROW(setLightmap(bare, "", 0, image), InputError);
+    setLightmap(good, "", 0, image);
+    EXPECT_NO_THROW(good.validate());
+    image.data[5] = -1;
+    EXPECT_THROW(setLightmap(good, "", 0, image), InputError);
+    EXPECT_THROW(setLightmap(good, "", 0, ImageF{1, 1, {"Y"}, {1.0f}, {}}), InputError);
 }
 
 TEST(Bake, WhatItRefuses) {

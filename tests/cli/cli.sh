@@ -102,6 +102,14 @@ expect 'no cube' 1 'no six faces' "$program" convert-environment sky.exr -o x.ex
 expect 'no such mapping' 2 'cubic' "$program" convert-environment sky.exr -o x.exr --to cubic
 expect 'mapping of no image' 2 'environment-map' "$program" render sample:cornell --environment 1,1,1 --environment-map cube
 expect 'bake' 0 'wrote ao.png, 8x8 texels, 4 rays each; ambient occlusion' "$program" bake sample:carved --node floor -o ao.png --size 8 --spp 4
+expect 'bake irradiance' 0 'wrote light.exr, 8x8 texels, 4 paths each; irradiance' "$program" bake sample:carved --node floor -o light.exr --size 8 --spp 4 --quantity irradiance
+expect 'a lightmap' 0 '' "$program" render sample:carved --pipeline raster --lightmap floor=light.exr --size 32x18 -o lit.png --quiet
+expect 'a lightmap of nothing' 1 "no node 'nobody'" "$program" render sample:carved --pipeline raster --lightmap nobody=light.exr --size 32x18 -o lit.png
+expect 'a lightmap without its node' 2 'is not NODE=FILE' "$program" render sample:carved --pipeline raster --lightmap light.exr --size 32x18 -o lit.png
+expect 'a lightmap for paths' 2 'for --pipeline raster only' "$program" render sample:carved --lightmap floor=light.exr --size 32x18 -o lit.png
+expect 'irradiance in 8 bits' 2 'name an .exr file' "$program" bake sample:carved --node floor -o light.png --quantity irradiance
+expect 'bake irradiance without coordinates' 1 'no texture coordinates 0' "$program" bake sample:cornell -o light.exr --quantity irradiance
+expect 'ripmaps' 0 '' "$program" render sample:carved --pipeline raster --texture-filter ripmap --size 32x18 -o rip.png --quiet
 expect 'bake without coordinates' 1 'no texture coordinates 0' "$program" bake sample:cornell -o ao.png
 expect 'bake of nothing' 1 "no node 'nobody'" "$program" bake sample:cornell --node nobody -o ao.png
 expect 'missing environment' 1 'nosky.exr' "$program" render sample:cornell --environment nosky.exr

@@ -174,6 +174,37 @@ TEST_F(GltfExtras, MaterialsTakeASolidTexture) {
               names);
 }
 
+TEST_F(GltfExtras, MaterialsNameMapsOfHeightsAndLight) {
+    const json properties = schema()["definitions"]["material"]["properties"];
+    GltfDocument file = GltfDocument::triangle();
+    file.doc["images"] = {{{"uri",
+                            "data:image/png;base64,"
+                            "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAA"
+                            "AABJRU5ErkJggg=="}}};
+    file.doc["textures"] = {{{"source", 0}}};
+    file.doc["meshes"][0]["primitives"][0]["material"] = 0;
+    json& own = file.doc["materials"][0]["extras"]["heliograph"];
+    own["height"] = properties["height"]["examples"][0];
+    own["lightmap"] = properties["lightmap"]["examples"][0];
+    const Scene scene = load(file);
+    EXPECT_NO_THROW(scene.validate());
+    const Material& material = scene.materials[0];
+    EXPECT_EQ(material.heightTexture.texture, 0);
+    EXPECT_EQ(material.heightTexture.texcoord, 0);
+    EXPECT_EQ(material.heightScale, 0.1f);
+    EXPECT_EQ(material.lightmapTexture.texture, 0);
+    EXPECT_EQ(material.lightmapTexture.texcoord, 1);
+    for (const auto& [name, bad] : {std::pair<const char*, json>{"height", {{"index", 1}}},
+                                    {"height", {{"scale", 1}}},
+                                    {"height", {{"index", 0}, {"texCoord", -1}}},
+                                    {"lightmap", {{"index", 7}}},
+                                    {"lightmap", {{"index", 0}, {"scale", 1}}}}) {
+        GltfDocument wrong = file;
+        wrong.doc["materials"][0]["extras"]["heliograph"][name] = bad;
+        EXPECT_THROW(load(wrong), InputError) << bad.dump();
+    }
+}
+
 class GltfCameraExtras : public GltfExtras {
 protected:
     Camera withCamera(const json& own, const std::string& type = "perspective") const {

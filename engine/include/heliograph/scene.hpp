@@ -111,6 +111,10 @@ struct Material {
     float heightScale = 0.0f;
     TextureUse occlusionTexture;
     float occlusionStrength = 1.0f;
+    /** Irradiance (W/m^2) of all light on the surface, linear, as bakeIrradiance() finds it: the raster
+     * pipeline shows it in place of the diffuse light that it would find, and reads no occlusionTexture then.
+     */
+    TextureUse lightmapTexture;
     glm::vec3 emission{0.0f};    ///< radiance: emissive factor times strength
     TextureUse emissiveTexture;  ///< sRGB
     float specular = 1.0f;       ///< KHR_materials_specular factor; 0 with metallic 0 is exactly Lambertian

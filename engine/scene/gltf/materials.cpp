@@ -66,6 +66,7 @@ public:
         material_.doubleSided = from.value("doubleSided", false);
         readExtensions(from);
         extras::readMaterial(from, material_);
+        readOwnTextures(from);
         return std::move(material_);
     }
 
@@ -177,6 +178,28 @@ private:
             material_.attenuationDistance = float(numberOr(from, "attenuationDistance", 0));
         material_.attenuationColor =
             unit(vectorOr(from, "attenuationColor", glm::vec3(1)), "attenuationColor");
+    }
+
+    /** Textures that extras.heliograph names. */
+    void readOwnTextures(const json& from) {
+        const auto own = [&](const char* member) -> const json* {
+            const auto extras = from.find("extras");
+            if (extras == from.end() || !extras->is_object() || !extras->contains("heliograph"))
+                return nullptr;
+            const json& mine = (*extras)["heliograph"];
+            if (!mine.is_object() || !mine.contains(member)) return nullptr;
+            if (mine[member]["index"].get<std::size_t>() >= asset_.document().size("textures"))
+                throw InputError(asset_.file(),
+                                 fmt::format("/materials/{}/extras/heliograph/{}/index", index_, member),
+                                 fmt::format("texture {} does not exist", mine[member]["index"].dump()),
+                                 "name one of the file's textures");
+            return &mine;
+        };
+        if (const json* const mine = own("height")) {
+            material_.heightTexture = use(*mine, "height");
+            material_.heightScale = float(numberOr((*mine)["height"], "scale", 1));
+        }
+        if (const json* const mine = own("lightmap")) material_.lightmapTexture = use(*mine, "lightmap");
     }
 
     void note(const std::string& extension) {
