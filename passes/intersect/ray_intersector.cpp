@@ -1,8 +1,12 @@
 #include "passes/intersect/ray_intersector.hpp"
 
+#include "passes/intersect/tree_access.hpp"
+
 #include <heliograph_kernels/intersect.hpp>
 
 #include <cassert>
+#include <map>
+#include <string>
 
 namespace helio {
 namespace {
@@ -12,11 +16,12 @@ constexpr std::uint32_t kGroupSize = 64;
 constexpr std::uint32_t kRaysPerGroup = 32 * kGroupSize;
 
 /** The kernel that walks the accelerator the scene is packed with. */
-Kernel kernelFor(const PackedScene& packed) {
+Kernel kernelFor(const PackedScene& packed, std::map<std::string, std::string> defines) {
     if (packed.accelerator != AcceleratorKind::Bvh)
         return compileVariant(shaders::intersectEach, acceleratorVariant(packed.accelerator));
-    if (packed.placed.empty()) return shaders::intersect;
-    return compileVariant(shaders::intersect, {.defines = {{"INSTANCES", "1"}}, .generated = {}});
+    if (!packed.placed.empty()) defines["INSTANCES"] = "1";
+    if (defines.empty()) return shaders::intersect;
+    return compileVariant(shaders::intersect, {.defines = defines, .generated = {}});
 }
 
 /** Loop turns a subgroup may start with, of the 65,535 that lavapipe runs; a ray may take 16,000. */
@@ -25,7 +30,7 @@ constexpr std::uint32_t kBudget = 30000;
 }  // namespace
 
 RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQuestion question,
-                               std::size_t capacity)
+                               std::size_t capacity, const std::optional<TreeAccess>& access)
     : triangles_(makeBuffer(device, "intersect.triangles", packed.triangles)),
       nodes_(makeBuffer(device, "intersect.nodes", packed.nodes)),
       rays_(device, "intersect.rays", capacity * sizeof(Ray)),
@@ -39,13 +44,15 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     const Buffer counters = graph.import(counters_);
     SpecConstants spec = {{"ANY", question == RayQuestion::Any},
                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}};
+    const TreeAccess reading = access.value_or(keptTreeAccess(device));
+    if (packed.accelerator == AcceleratorKind::Bvh) spec.merge(accessConstants(reading));
     if (packed.splitTree) spec["SPLIT_TREE"] = true;
     std::vector<Binding> placed;
     if (!packed.placed.empty()) {
         placed_ = makeBuffer(device, "intersect.placed", packed.placed);
         placed.push_back({"uPlaced", graph.import(*placed_)});
     }
-    graph.compute("intersect", kernelFor(packed), {.spec = spec})
+    graph.compute("intersect", kernelFor(packed, accessDefines(reading, device, packed)), {.spec = spec})
         .reads(placed)
         .reads({{"uTriangles", graph.import(triangles_)},
                 {"uNodes", graph.import(nodes_)},

@@ -12,6 +12,7 @@
 
 #include <heliograph/device.hpp>
 #include <heliograph/graph.hpp>
+#include <heliograph/tree_access.hpp>
 
 #include <glm/glm.hpp>
 
@@ -45,8 +46,10 @@ class RayIntersector {
 public:
     RayIntersector(const RayIntersector&) = delete;
     RayIntersector& operator=(const RayIntersector&) = delete;
-    /** Uploads triangles and tree. `capacity`: rays at most, up to 2^23. `packed` must have a tree. */
-    RayIntersector(Device& device, const PackedScene& packed, RayQuestion question, std::size_t capacity);
+    /** Uploads triangles and tree. `capacity`: rays at most, up to 2^23. `packed` must have a tree, which is
+     * read as is kept for the device where no `access` says how. */
+    RayIntersector(Device& device, const PackedScene& packed, RayQuestion question, std::size_t capacity,
+                   const std::optional<TreeAccess>& access = {});
 
     /** The rays of the next runs. */
     void upload(std::span<const Ray> rays);

@@ -1,5 +1,6 @@
 #include "passes/pathtrace/path_tracer.hpp"
 
+#include "passes/intersect/tree_access.hpp"
 #include "passes/pathtrace/bounce_layers.hpp"
 #include "passes/pathtrace/camera_frame.hpp"
 #include "passes/pathtrace/parameters.hpp"
@@ -89,7 +90,10 @@ struct PathTracer::Impl {
 
     SpecConstants constants() const {
         SpecConstants spec = scene_.constants(kSurfaceConstants);
-        if (!unrolled_) spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
+        if (!unrolled_) {
+            spec["STACK_SIZE"] = std::int32_t(scene_.info().treeDepth + 1);
+            if (scene_.info().accelerator == AcceleratorKind::Bvh) spec.merge(accessConstants(access_));
+        }
         if (scene_.info().splitTree) spec["SPLIT_TREE"] = true;
         if (scene_.hasPlacedMeshes()) spec.merge(scene_.constants({"PLACED_BITS"}));
         spec["ORTHOGRAPHIC"] = orthographic_;
@@ -108,6 +112,8 @@ struct PathTracer::Impl {
         defines.insert(materialDefines_.begin(), materialDefines_.end());
         if (scene_.info().accelerator != AcceleratorKind::Bvh)
             defines.merge(acceleratorVariant(scene_.info().accelerator).defines);
+        else if (!unrolled_)
+            defines.merge(accessDefines(access_, device_, scene_.info()));
         if (scene_.info().solidTextures) defines["SOLID_TEXTURES"] = "1";
         if (scene_.info().hasShapes()) defines["SHAPES"] = "1";
         if (scene_.hasPlacedMeshes()) defines["INSTANCES"] = "1";
@@ -307,6 +313,7 @@ struct PathTracer::Impl {
     std::optional<DeviceBuffer> table_;
     bool orthographic_;
     bool unrolled_ = false;
+    TreeAccess access_ = keptTreeAccess(device_);
     std::string generated_;
     std::map<std::string, std::string> materialDefines_;
     DeviceImage state_;

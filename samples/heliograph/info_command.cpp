@@ -6,6 +6,7 @@
 
 #include <heliograph/device.hpp>
 #include <heliograph/scene.hpp>
+#include <heliograph/tree_access.hpp>
 #include <heliograph/version.hpp>
 
 #include <fmt/format.h>
@@ -93,20 +94,41 @@ int info(const std::string& source, bool json) {
     return Done;
 }
 
+int measure(const std::string& name) {
+    Device device({.device = name});
+    const std::vector<MeasuredAccess> measured = measureTreeAccess(device);
+    const TreeAccess fastest = fastestAccess(measured);
+    printLine("{}: how trees are read", device.info().name);
+    for (const MeasuredAccess& way : measured)
+        printLine("  {:<32} {:8.1f} ms{}", describe(way.access), 1e3 * way.seconds,
+                  way.access == fastest ? "  taken from now on" : "");
+    if (keepTreeAccess(device, fastest)) return Done;
+    say("the choice could not be kept: the folder of the pipeline cache cannot be written");
+    return Failed;
+}
+
 }  // namespace
 
 void addInfoCommand(CLI::App& app, Command& run) {
     struct Arguments {
         std::string scene;
-        bool json = false;
+        bool json = false, measure = false;
+        std::string device = "auto";
     };
     auto arguments = std::make_shared<Arguments>();
     CLI::App* command =
         app.add_subcommand("info", "List the devices, or what a scene holds, needs and would skip");
     command->add_option("SCENE", arguments->scene, "A file or sample:NAME");
     command->add_flag("--json", arguments->json, "Print JSON");
-    command->callback(
-        [arguments, &run] { run = [arguments] { return info(arguments->scene, arguments->json); }; });
+    CLI::Option* measured = command->add_flag(
+        "--measure", arguments->measure,
+        "Measure in which way the device reads trees fastest, and keep it for all renders on it");
+    command->add_option("--device", arguments->device, "Of --measure; default auto")->needs(measured);
+    command->callback([arguments, &run] {
+        run = [arguments] {
+            return arguments->measure ? measure(arguments->device) : info(arguments->scene, arguments->json);
+        };
+    });
 }
 
 }  // namespace helio::cli

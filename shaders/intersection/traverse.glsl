@@ -31,9 +31,21 @@
 #endif
 
 /** The tree, 5 texels a node; see BvhNode. */
+#ifdef NODES_IN_STORAGE
+layout(set = 0, binding = 21, std430) readonly buffer uNodes { uvec4 nodeTexels[]; };
+uvec4 nodeTexel(int i) {
+    return nodeTexels[i];
+}
+#else
 layout(set = 0, binding = 21) uniform usamplerBuffer uNodes;
+uvec4 nodeTexel(int i) {
+    return texelFetch(uNodes, i);
+}
+#endif
 /** Levels of the tree at most: each level leaves at most one entry. */
 layout(constant_id = 120) const int STACK_SIZE = 24;
+/** Entries up to which they are moved, see traversalStack; heliograph/tree_access.hpp. */
+layout(constant_id = 146) const int MOVED_STACK_AT_MOST = 16;
 /** Whether spatial splits have put triangles into several slots: they are then told apart by g. */
 layout(constant_id = 119) const bool SPLIT_TREE = false;
 
@@ -106,7 +118,7 @@ uint traversalStack[STACK_SIZE];
 int traversalTop;
 /** Whether entries are moved rather than addressed. Few stay in registers; lavapipe writes to an address lane
  * by lane, with branches that it mispredicts. */
-const bool MOVE_STACK = STACK_SIZE <= 16;
+const bool MOVE_STACK = STACK_SIZE <= MOVED_STACK_AT_MOST;
 
 void clearStack() {
     traversalTop = 0;
@@ -188,11 +200,11 @@ void visitNode(inout Traversal t) {
     const uint bit = uint(findLSB(t.group));
     const uint rest = t.group & (t.group - 1u);
     const int node = (int(t.group >> 8) + int(bit ^ t.octant)) * 5;
-    const uvec4 head = texelFetch(uNodes, node);
-    const uvec4 child = texelFetch(uNodes, node + 1);
-    const uvec4 x = texelFetch(uNodes, node + 2);
-    const uvec4 y = texelFetch(uNodes, node + 3);
-    const uvec4 z = texelFetch(uNodes, node + 4);
+    const uvec4 head = nodeTexel(node);
+    const uvec4 child = nodeTexel(node + 1);
+    const uvec4 x = nodeTexel(node + 2);
+    const uvec4 y = nodeTexel(node + 3);
+    const uvec4 z = nodeTexel(node + 4);
     const vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * t.inverse;
 #ifdef INSTANCES
     const vec3 offset = (uintBitsToFloat(head.xyz) - t.from) * t.inverse;

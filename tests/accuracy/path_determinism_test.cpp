@@ -2,6 +2,9 @@
 // driver's threads.
 #include "tests/accuracy/path_render.hpp"
 #include "tests/accuracy/path_scenes.hpp"
+#include "tests/support/device.hpp"
+
+#include <heliograph/tree_access.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,6 +15,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <random>
 #include <string>
 
 namespace helio::test {
@@ -105,6 +110,32 @@ TEST(PathDeterminism, AcceleratorsDoNotMatter) {
     for (std::size_t i = 0; i < tree.mean.size(); ++i)
         differ += glm::length(beside.mean[i] - tree.mean[i]) > 1e-4 * glm::length(tree.mean[i]) ? 1 : 0;
     EXPECT_LE(differ, tree.mean.size() / 200);
+}
+
+/** The way that is kept for the device is taken by both schedulers. */
+TEST(PathDeterminism, WaysToReadTheTreeDoNotMatter) {
+    const auto image = [](Scheduler scheduler) {
+        PathTraceOptions o = options(30000);
+        o.accelerator = AcceleratorKind::Bvh;
+        o.scheduler = scheduler;
+        return hashOf(trace(ballInRoom(), o, 2));
+    };
+    const auto usual = image(Scheduler::Megakernel);
+    const auto folder =
+        std::filesystem::temp_directory_path() / fmt::format("helio-ways-{}", std::random_device{}());
+    const char* before = std::getenv("XDG_CACHE_HOME");
+    const std::string kept = before != nullptr ? before : "";
+    ::setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+    const TreeAccess access{.nodesInStorage = true, .addressedStack = true};
+    ASSERT_TRUE(keepTreeAccess(device(), access));
+    ASSERT_EQ(keptTreeAccess(device()), access);
+    for (Scheduler scheduler : {Scheduler::Megakernel, Scheduler::Wavefront})
+        EXPECT_EQ(image(scheduler), usual) << int(scheduler);
+    if (before != nullptr)
+        ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+    else
+        ::unsetenv("XDG_CACHE_HOME");
+    std::filesystem::remove_all(folder);
 }
 
 /** Not a test of its own: what RunsWithOneAndTwoThreads starts. */

@@ -142,6 +142,7 @@ expect 'unnamed cameras' 1 "give an index from 0 to 1$" "$program" render unname
 cp unnamed.gltf $'not\xffutf8.gltf'
 expect 'info json of a name that is not UTF-8' 0 '"scene"' "$program" info --json $'not\xffutf8.gltf'
 expect 'info' 0 'Vulkan' "$program" info
+expect 'a device to measure, and nothing to measure' 2 'requires --measure' "$program" info --device 0
 expect 'info json' 0 '"capabilities"' "$program" info --json
 expect 'info scene' 0 'triangles' "$program" info sample:cornell
 expect 'info of the materials' 0 'emission: 1' "$program" info sample:cornell

@@ -16,5 +16,6 @@
 #include <heliograph/renderer.hpp>
 #include <heliograph/scene.hpp>
 #include <heliograph/surfaces.hpp>
+#include <heliograph/tree_access.hpp>
 #include <heliograph/verify.hpp>
 #include <heliograph/version.hpp>
