@@ -38,6 +38,10 @@ struct RasterOptions {
     /** Rows of two columns that an invocation of the tile kernel owns, 4 or 8; 0 chooses by the device's
      * subgroups. Results do not depend on it. */
     std::uint32_t stripRows = 0;
+    /** Whether subgroups set up triangles until all their invocations have some to draw: where few triangles
+     * cover a pixel. None: where they outnumber the pixels. Only narrow subgroups do. Results do not depend
+     * on it. */
+    std::optional<bool> gather = {};
     /** Depth of the keys. Perspective views of the conventional formats are made by conventionalDepth(). */
     DepthFormat depth = DepthFormat::Reversed;
 };

@@ -64,124 +64,156 @@ uint ownTriangle(uint k, uint lane, out bool isThere) {
 #endif
 }
 
+/// What an invocation has come across, and its triangles for the tiles and for clipping: bit k of turn k.
+struct Work {
+    uint outside, back, empty, small, visited, covered;
+    uint tiledBits, clippedBits;
+};
+
+/// A small triangle's pixels that are still to be drawn.
+struct Pending {
+    uvec2 mask;     // bit 8 y + x: the pixel at (x, y) from the first
+    uint first;     // x | y << 16
+    uvec2 a, b, c;  // doubles: of the depth's plane
+    int low, high;
+    uint id;
+};
+
+/// Sets up the triangle of turn k: its pixels where it is small, else none.
+Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
+    bool valid;
+    uint t = ownTriangle(k, lane, valid);
+    Triangle source = fetchTriangle(int(t));
+    HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
+
+    // What lies behind the near plane in part is left to clipping; of the rest, snapped corners tell what is outside.
+    double least = lesser(a.near, lesser(b.near, c.near)), most = greater(a.near, greater(b.near, c.near));
+    bool before = least >= 0.0LF;
+    ivec2 p = snapWithin(a), q = snapWithin(b), r = snapWithin(c);
+    ivec2 lowest = min(p, min(q, r)), highest = max(p, max(q, r));
+    bool beside = min(highest.x, highest.y) < 0 || lowest.x > size.x * SUBPIXELS || lowest.y > size.y * SUBPIXELS;
+    bool outside = most < 0.0LF || (before && beside);
+    work.outside += uint(valid && outside);
+    valid = valid && !outside;
+
+    DepthPlane plane = depthPlane(a, b, c);
+    bool back = (push.flags & RASTER_CULL_BACK) != 0u && plane.facing < 0.0LF;
+    work.back += uint(valid && back);
+    valid = valid && !back;
+
+    bool far = min(lowest.x, lowest.y) <= -SNAP_LIMIT || max(highest.x, highest.y) >= SNAP_LIMIT;
+    bool clip = valid && (!before || far);
+    work.clippedBits |= uint(clip) << k;
+    valid = valid && !clip;
+
+    int64_t area = signedArea(p, q, r);
+    ivec4 bounds = pixelBounds(p, q, r, size);
+    ivec2 cells = bounds.zw - bounds.xy + 1;
+    bool none = area == 0 || min(cells.x, cells.y) <= 0;
+    work.empty += uint(valid && none);
+    valid = valid && !none;
+
+    ivec2 extent = highest - lowest;
+    bool small = max(cells.x, cells.y) <= SMALL && max(extent.x, extent.y) <= SMALL_EXTENT;
+    bool tiled = valid && !small;
+    work.tiledBits |= uint(tiled) << k;
+
+    valid = valid && small;
+    work.small += uint(valid);
+    if (area < 0) {
+        ivec2 swap = q;
+        q = r;
+        r = swap;
+    }
+    ivec3 e = ivec3(edgeAtSmall(p, q, bounds.xy), edgeAtSmall(q, r, bounds.xy), edgeAtSmall(r, p, bounds.xy));
+    ivec3 right = ivec3(p.y - q.y, q.y - r.y, r.y - p.y);
+    ivec3 down = ivec3(q.x - p.x, r.x - q.x, p.x - r.x);
+    int low = depthCode(double(plane.low)), high = depthCode(double(plane.high));
+    uint id = uint(source.g);
+    work.visited += valid ? uint(cells.x * cells.y) : 0u;
+    // First which pixels are covered, four by two at a time, then those alone: an atomic's code costs far more than
+    // a test, even where it is masked out. Bit 8 y + x.
+    int width_ = valid ? cells.x : 0, rows = valid ? cells.y : 0;
+    uint inRow = (1u << width_) - 1u;
+    uint64_t coverage = 0ul;
+    for (int y = 0; y < rows; y += 2) {
+        uint upper = 0u, lower = 0u;  // bit x: outside
+        ivec3 edge = e, below = e + down;
+        for (int first = 0; first < width_; first += 4) {
+            uint upper4 = 0u, lower4 = 0u;
+            [[unroll]] for (int x = 0; x < 4; ++x) {
+                upper4 |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
+                lower4 |= uint(below.x | below.y | below.z) >> (31 - x) & (1u << x);
+                edge += right;
+                below += right;
+            }
+            upper |= upper4 << first;
+            lower |= lower4 << first;
+        }
+        uint two = (~upper & inRow) | (y + 1 < rows ? (~lower & inRow) << 8 : 0u);
+        coverage |= uint64_t(two) << (8 * y);
+        e += 2 * down;
+    }
+    uvec2 mask = unpackUint2x32(coverage);
+    work.covered += uint(bitCount(mask.x) + bitCount(mask.y));
+    return Pending(mask, uint(max(bounds.x, 0)) | uint(max(bounds.y, 0)) << 16, unpackDouble2x32(plane.a),
+                   unpackDouble2x32(plane.b), unpackDouble2x32(plane.c), low, high, id);
+}
+
+bool isDrawn(Pending p) { return (p.mask.x | p.mask.y) == 0u; }
+
+/// Draws one of the pixels, where there are any.
+void drawPixel(inout Pending p, ivec2 size) {
+    bool isThere = !isDrawn(p), upper = p.mask.x == 0u;
+    uint word = upper ? p.mask.y : p.mask.x;
+    int bit = findLSB(word), x = int(p.first & 0xffffu) + (bit & 7), y = int(p.first >> 16) + (bit >> 3) + (upper ? 4 : 0);
+    word &= word - 1u;
+    p.mask = upper ? uvec2(0u, word) : uvec2(word, p.mask.y);
+    double rowTerm = packDouble2x32(p.b) * (double(y) + 0.5LF) + packDouble2x32(p.c);
+    int depth = depthBits(packDouble2x32(p.a), rowTerm, double(x) + 0.5LF, p.low, p.high);
+    uint64_t key = visibilityKey(depth, p.id);
+    // Without a look at what is there: that takes a fifth longer on CPUs, hidden triangles or not.
+    int index = y * size.x + x;
+#ifdef PEEL
+    if (key >= packUint2x32(texelFetch(uLimit, isThere ? index : 0).xy)) key = 0ul;
+#endif
+    if (isThere) atomicMax(visibility[index], key);
+}
+
+#ifdef GATHER
+#include "passes/raster/gather.glsl"
+#endif
+
 void main() {
     uint lane = gl_LocalInvocationIndex;
     if (lane < 4u) packed[lane] = 0u;
     barrier();
 
     ivec2 size = imageSizePixels();
-    uint outsideCount = 0u, backCount = 0u, emptyCount = 0u, smallCount = 0u, largeCount = 0u,
-         clippedCount = 0u, visited = 0u, covered = 0u;
-    uint tiledBits = 0u, clippedBits = 0u;  // of this invocation's triangles
+    Work work = Work(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+#ifdef GATHER
+    drawTogether(lane, size, work);
+#else
     [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
-        bool valid;
-        uint t = ownTriangle(k, lane, valid);
-        Triangle source = fetchTriangle(int(t));
-        HomogeneousVertex a = projectVertex(source.v0), b = projectVertex(source.v1), c = projectVertex(source.v2);
-
-        // What lies behind the near plane in part is left to clipping; of the rest, snapped corners tell what is outside.
-        double least = lesser(a.near, lesser(b.near, c.near)), most = greater(a.near, greater(b.near, c.near));
-        bool before = least >= 0.0LF;
-        ivec2 p = snapWithin(a), q = snapWithin(b), r = snapWithin(c);
-        ivec2 lowest = min(p, min(q, r)), highest = max(p, max(q, r));
-        bool beside = min(highest.x, highest.y) < 0 || lowest.x > size.x * SUBPIXELS || lowest.y > size.y * SUBPIXELS;
-        bool outside = most < 0.0LF || (before && beside);
-        outsideCount += uint(valid && outside);
-        valid = valid && !outside;
-
-        DepthPlane plane = depthPlane(a, b, c);
-        bool back = (push.flags & RASTER_CULL_BACK) != 0u && plane.facing < 0.0LF;
-        backCount += uint(valid && back);
-        valid = valid && !back;
-
-        bool far = min(lowest.x, lowest.y) <= -SNAP_LIMIT || max(highest.x, highest.y) >= SNAP_LIMIT;
-        bool clip = valid && (!before || far);
-        clippedBits |= uint(clip) << k;
-        valid = valid && !clip;
-
-        int64_t area = signedArea(p, q, r);
-        ivec4 bounds = pixelBounds(p, q, r, size);
-        ivec2 cells = bounds.zw - bounds.xy + 1;
-        bool none = area == 0 || min(cells.x, cells.y) <= 0;
-        emptyCount += uint(valid && none);
-        valid = valid && !none;
-
-        ivec2 extent = highest - lowest;
-        bool small = max(cells.x, cells.y) <= SMALL && max(extent.x, extent.y) <= SMALL_EXTENT;
-        bool tiled = valid && !small;
-        tiledBits |= uint(tiled) << k;
-
-        valid = valid && small;
-        smallCount += uint(valid);
-        if (area < 0) {
-            ivec2 swap = q;
-            q = r;
-            r = swap;
-        }
-        ivec3 e = ivec3(edgeAtSmall(p, q, bounds.xy), edgeAtSmall(q, r, bounds.xy), edgeAtSmall(r, p, bounds.xy));
-        ivec3 right = ivec3(p.y - q.y, q.y - r.y, r.y - p.y);
-        ivec3 down = ivec3(q.x - p.x, r.x - q.x, p.x - r.x);
-        int low = depthCode(double(plane.low)), high = depthCode(double(plane.high));
-        uint id = uint(source.g);
-        visited += valid ? uint(cells.x * cells.y) : 0u;
-        // First which pixels are covered, four by two at a time, then those alone: an atomic's code costs far more than
-        // a test, even where it is masked out. Bit 8 y + x.
-        int width_ = valid ? cells.x : 0, rows = valid ? cells.y : 0;
-        uint inRow = (1u << width_) - 1u;
-        uint64_t coverage = 0ul;
-        for (int y = 0; y < rows; y += 2) {
-            uint upper = 0u, lower = 0u;  // bit x: outside
-            ivec3 edge = e, below = e + down;
-            for (int first = 0; first < width_; first += 4) {
-                uint upper4 = 0u, lower4 = 0u;
-                [[unroll]] for (int x = 0; x < 4; ++x) {
-                    upper4 |= uint(edge.x | edge.y | edge.z) >> (31 - x) & (1u << x);
-                    lower4 |= uint(below.x | below.y | below.z) >> (31 - x) & (1u << x);
-                    edge += right;
-                    below += right;
-                }
-                upper |= upper4 << first;
-                lower |= lower4 << first;
-            }
-            uint two = (~upper & inRow) | (y + 1 < rows ? (~lower & inRow) << 8 : 0u);
-            coverage |= uint64_t(two) << (8 * y);
-            e += 2 * down;
-        }
-        uvec2 mask = unpackUint2x32(coverage);
-        covered += uint(bitCount(mask.x) + bitCount(mask.y));
-        int origin = bounds.y * size.x + bounds.x;
-        double cornerX = double(bounds.x) + 0.5LF, cornerY = double(bounds.y) + 0.5LF;
-        for (; (mask.x | mask.y) != 0u;) {
-            bool upper = mask.x == 0u;
-            uint word = upper ? mask.y : mask.x;
-            int at = findLSB(word), x = at & 7, y = (at >> 3) + (upper ? 4 : 0);
-            word &= word - 1u;
-            mask = upper ? uvec2(0u, word) : uvec2(word, mask.y);
-            int depth = depthBits(plane.a, plane.b * (cornerY + double(y)) + plane.c, cornerX + double(x), low, high);
-            uint64_t key = visibilityKey(depth, id);
-            // Without a look at what is there: that takes a fifth longer on CPUs, hidden triangles or not.
-            int index = origin + y * size.x + x;
-#ifdef PEEL
-            if (key >= packUint2x32(texelFetch(uLimit, index).xy)) key = 0ul;
-#endif
-            atomicMax(visibility[index], key);
-        }
+        Pending own = setUp(k, lane, size, work);
+        for (; !isDrawn(own);) drawPixel(own, size);
     }
+#endif
 
     // Lists last, and once: an atomic's code and a store's cost as much where every invocation is masked out.
     bool isThere;
-    largeCount = bitCount(tiledBits);
+    uint tiledBits = work.tiledBits, clippedBits = work.clippedBits, largeCount = bitCount(tiledBits);
     uint at = 0u;
     if (tiledBits != 0u) at = atomicAdd(state.largeCount, largeCount);
     for (; tiledBits != 0u; tiledBits &= tiledBits - 1u) large[at++] = ownTriangle(uint(findLSB(tiledBits)), lane, isThere);
-    clippedCount = bitCount(clippedBits);
+    uint clippedCount = bitCount(clippedBits);
     if (clippedBits != 0u) at = atomicAdd(state.clippedCount, clippedCount);
     for (; clippedBits != 0u; clippedBits &= clippedBits - 1u) clipped[at++] = ownTriangle(uint(findLSB(clippedBits)), lane, isThere);
 
     // Packed, since an atomic costs more than the rest of a tiny triangle's bookkeeping: a workgroup has 512
     // triangles, which 10 bits hold, and tests at most 2^15 pixels.
-    uvec4 sums = subgroupAdd(uvec4(outsideCount | backCount << 10 | emptyCount << 20,
-                                   smallCount | largeCount << 10 | clippedCount << 20, visited, covered));
+    uvec4 sums = subgroupAdd(uvec4(work.outside | work.back << 10 | work.empty << 20,
+                                   work.small | largeCount << 10 | clippedCount << 20, work.visited, work.covered));
     if (subgroupElect()) {
         atomicAdd(packed[0], sums.x);
         atomicAdd(packed[1], sums.y);

@@ -314,6 +314,30 @@ TEST(RasterCapacity, ListsThatHoldOneEntryForATriangle) {
     }
 }
 
+TEST(RasterCapacity, SmallTrianglesGatheredOrNot) {
+    const RasterView view = pixelView(kWidth, kHeight);
+    for (std::uint32_t count : {1u, 7u, 33u, 600u, 20000u}) {
+        Random random(count);
+        std::vector<RasterTriangle> list;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            // Most cover few pixels or none; some are for the tiles, some cross the eye's plane.
+            const double side = random.uniform(0, 1) < 0.02 ? 60 : random.uniform(0, 1) < 0.5 ? 1.5 : 8;
+            const glm::dvec2 centre(random.uniform(0, kWidth), random.uniform(0, kHeight));
+            std::array<glm::dvec2, 3> p;
+            for (auto& corner : p)
+                corner = centre + side * glm::dvec2(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+            list.push_back(facing(p, 1.0 + random.uniform(0, 1), i));
+            if (i % 50 == 49) list.back().v2.z = 0.5f;
+        }
+        RasterRunner apart(kWidth, kHeight, count, {.gather = false});
+        RasterRunner together(kWidth, kHeight, count, {.gather = true}, {.poison = true});
+        const RasterResult result = together.run(view, list), expected = apart.run(view, list);
+        EXPECT_EQ(compare(result, view, list).different, 0u) << count;
+        EXPECT_EQ(result.keys, expected.keys) << count;
+        EXPECT_EQ(result.counters.smallCovered, expected.counters.smallCovered) << count;
+    }
+}
+
 TEST(RasterCapacity, AMillionTinyTriangles) {
     const RasterView view = pixelView(kWidth, kHeight);
     constexpr std::uint32_t count = 1000000;
