@@ -16,9 +16,9 @@ namespace helio {
 namespace {
 
 /** Texels whose paths are traced at once: pixels of a film. */
-constexpr std::uint32_t kSide = 512;
+constexpr std::uint32_t kFilmSide = 512;
 /** Samples between two looks at whether the application stops. */
-constexpr std::uint32_t kBatch = 64;
+constexpr std::uint32_t kSamplesAtOnce = 64;
 
 /** Mean radiance over pi of the paths of every point, two texels each; nothing where it was stopped. */
 std::optional<std::vector<glm::vec4>> gathered(Device& device, DeviceScene& scene, PathTraceOptions trace,
@@ -32,7 +32,7 @@ std::optional<std::vector<glm::vec4>> gathered(Device& device, DeviceScene& scen
     }
     PathTracer tracer(device, scene, Camera{}, glm::dmat4(1.0), trace, film);
     for (std::uint32_t end = 0; end < trace.samples;) {
-        end = std::min(end + kBatch, trace.samples);
+        end = std::min(end + kSamplesAtOnce, trace.samples);
         while (!tracer.advance(end))
             if (!progress(end)) return {};
         if (!progress(end)) return {};
@@ -69,10 +69,10 @@ ImageF bakeIrradiance(Device& device, const Scene& scene, const BakeOptions& opt
     std::vector<float> values[3] = {std::vector<float>(all), std::vector<float>(all),
                                     std::vector<float>(all)};
     std::vector<bool> covered(all);
-    constexpr std::size_t most = std::size_t(kSide) * kSide;
+    constexpr std::size_t most = std::size_t(kFilmSide) * kFilmSide;
     for (std::size_t first = 0; first < texels.size(); first += most) {
         const std::size_t count = std::min(most, texels.size() - first);
-        const auto width = std::uint32_t(std::min<std::size_t>(count, kSide));
+        const auto width = std::uint32_t(std::min<std::size_t>(count, kFilmSide));
         trace.size = {width, std::uint32_t((count + width - 1) / width)};
         trace.meterPoints.clear();
         for (std::size_t i = 0; i < std::size_t(trace.size[0]) * trace.size[1]; ++i) {
