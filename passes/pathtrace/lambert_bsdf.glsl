@@ -57,6 +57,9 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
 bool scatters(SurfaceBsdf bsdf) {
     return max(max(bsdf.albedo.x, bsdf.albedo.y), bsdf.albedo.z) > 0.0;
 }
+bool takesGuide(SurfaceBsdf bsdf) {
+    return true;
+}
 /** Light that a surface shows of itself beyond emission. */
 vec3 ownLight(SurfaceBsdf bsdf) {
     return vec3(0.0);

@@ -208,6 +208,19 @@ SurfaceBsdf surfaceBsdf(SurfacePoint s, vec3 direction, float choice, inout vec3
 bool scatters(SurfaceBsdf bsdf) {
     return !bsdf.unlit;
 }
+/** Whether much of the light is scattered so widely that directions may come from tables of caustics. */
+bool takesGuide(SurfaceBsdf bsdf) {
+    const float wide = 0.09;  // the alpha of a roughness of 0.3
+    bool takes = false;
+    if (HAS_GLTF && bsdf.model == 0u) {
+        const float diffuse = (1.0 - bsdf.gltf.metallic) * (1.0 - bsdf.gltf.transmission);
+        takes = !HAS_SPECULAR || diffuse > 0.1 || min(bsdf.gltf.alpha.x, bsdf.gltf.alpha.y) > wide;
+    }
+    if (HAS_MODEL(MODEL_OREN_NAYAR) && bsdf.model == MODEL_OREN_NAYAR + 1u) takes = true;
+    if (HAS_MODEL(MODEL_PHONG) && bsdf.model == MODEL_PHONG + 1u) takes = bsdf.other.exponent < 50.0;
+    if (HAS_MODEL(MODEL_BLINN_PHONG) && bsdf.model == MODEL_BLINN_PHONG + 1u) takes = bsdf.other.exponent < 200.0;
+    return takes && !bsdf.unlit;
+}
 vec3 ownLight(SurfaceBsdf bsdf) {
     return HAS_UNLIT && bsdf.unlit ? bsdf.albedo : vec3(0.0);
 }

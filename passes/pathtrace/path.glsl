@@ -12,6 +12,9 @@
 #else
 #include "passes/pathtrace/lambert_bsdf.glsl"
 #endif
+#ifdef GUIDED
+#include "passes/pathtrace/guide.glsl"
+#endif
 #ifdef RADIOSITY
 #include "passes/radiosity/patch_radiance.glsl"
 #endif
@@ -54,6 +57,9 @@ struct Path {
     uint sampleIndex;
     int source;        ///< slot of the triangle the ray leaves, -1 for the camera
     int lightPlace;    ///< of the surface that the ray leaves, for the chances of lights there
+#ifdef GUIDED
+    float reach;       ///< what its largest throughput would be had the last rough surface not guided it: roulette goes by it
+#endif
 };
 
 /** A question to the scene: is the way to a light free, and what does it then bring? */
@@ -110,7 +116,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
 #endif
 
     const uint dimension = DIMENSION_PATH + path.depth * DIMENSIONS_PER_SCATTERING;
-    const vec2 lobe = chooseLobe(SAMPLER_KIND, numbers, dimension);
+    vec2 lobe = chooseLobe(SAMPLER_KIND, numbers, dimension);
     const SurfaceBsdf bsdf = surfaceBsdf(s, path.direction, lobe.y, path.throughput);
     if (hit) path.radiance += path.throughput * ownLight(bsdf);
     const bool goesOn = hit && scatters(bsdf);
@@ -119,7 +125,20 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     const uvec2 choice = sampleBits2D(SAMPLER_KIND, numbers, dimension + 2u);
 
     const vec2 turn = sample2D(SAMPLER_KIND, numbers, dimension + 1u);
+#ifdef GUIDED
+    const bool wide = takesGuide(bsdf);
+    const Guide guide = guideAt(s.position, s.face, hit && wide);
+    const bool guided = lobe.x < guide.share;
+    lobe.x = min(guided ? lobe.x / guide.share : (lobe.x - guide.share) / (1.0 - guide.share), 0.99999994);
+#endif
     SurfaceSample next = sampleSurface(bsdf, s, turn, lobe.x);
+#ifdef GUIDED
+    const float fromTable = guideDirection(guide, guided, lobe.x, turn, next.direction);
+    if (guided) {
+        next.density = 1.0;  // by which its worth is found
+        next.goes = true;
+    }
+#endif
     if (HEMISPHERE) {
         next.direction = uniformDirection(s.shading, turn);
         next.density = turn.x * INV_PI;  // by which its worth is found
@@ -133,6 +152,13 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
     }
     const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, WHITTED ? 0.0 : light.density, next);
+#ifdef GUIDED
+    // What is drawn from both is worth its value over both densities. Against light sampling it is weighed by the
+    // surface's own density alone: weights that sum to 1 need not be those of the densities drawn by.
+    const float unguided = largestOf(next.weight), before = largestOf(path.throughput);
+    if (next.density < 0.0) next.weight /= 1.0 - guide.share;
+    if (next.density > 0.0) next.weight *= next.density / mix(next.density, fromTable, guide.share);
+#endif
 
     shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
     if (LIGHT_COUNT > 0) {
@@ -158,7 +184,15 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     path.origin = leaving(s, next.direction);
     path.source = slot;
     path.depth += 1u;
+#ifdef GUIDED
+    // Guided paths have small throughputs where much light is to come: roulette by these would end just them. What
+    // comes to a rough surface again found no caustic.
+    path.reach = (wide ? before : path.reach) * unguided;
+    const float keep = rouletteChance(max(path.reach, largestOf(path.throughput)), path.depth, next.density < 0.0);
+    path.reach /= keep;
+#else
     const float keep = rouletteChance(largestOf(path.throughput), path.depth, next.density < 0.0);
+#endif
     alive = alive && next.goes && unitFloat(choice.y) < keep;
     path.throughput /= keep;
     return alive;

@@ -3,6 +3,8 @@
 #include "passes/intersect/tree_access.hpp"
 #include "passes/pathtrace/bounce_layers.hpp"
 #include "passes/pathtrace/camera_frame.hpp"
+#include "passes/pathtrace/caustic_guide.hpp"
+#include "passes/pathtrace/kernel_interface.hpp"
 #include "passes/pathtrace/parameters.hpp"
 #include "passes/pathtrace/unrolled_scene.hpp"
 #include "passes/pathtrace/wavefront.hpp"
@@ -38,6 +40,9 @@ const std::vector<std::string_view> kSurfaceConstants = {"HAS_NORMALS",         
                                                          "HAS_BASE_TEXTURES",   "HAS_FLOAT_TEXTURES",
                                                          "HAS_LINEAR_TEXTURES", "TRIANGLE_COUNT"};
 
+/** Rows of texels that uState has a pixel: of paths, and of guided ones. */
+constexpr std::array<std::uint32_t, 2> kStateRows = {2, 3};
+
 /** Loop turns of a dispatch of the megakernel for which the wavefront makes one round. */
 constexpr std::uint32_t kTurnsOfRound = 1000;
 
@@ -63,7 +68,8 @@ struct PathTracer::Impl {
           camera_(cameraTable(camera, double(optionsIn.size[0]) / double(optionsIn.size[1]),
                               optionsIn.shutter, optionsIn.cameraPoses)),
           orthographic_(!camera.perspective),
-          state_(device, "pathtrace.state", optionsIn.size[0] * 4, optionsIn.size[1] * 2, Format::RGBA32F),
+          state_(device, "pathtrace.state", optionsIn.size[0] * 4,
+                 optionsIn.size[1] * kStateRows[optionsIn.guide != nullptr], Format::RGBA32F),
           counters_(device, "pathtrace.counters", sizeof(DeviceCounters)) {
         assert(film.width() == options_.size[0] && film.height() == options_.size[1]);
         assert(options_.turnBudget >= 1 && options_.turnBudget <= 33000);
@@ -186,6 +192,20 @@ struct PathTracer::Impl {
             meterPoints_.emplace(makeBuffer(device_, "pathtrace.meterPoints", options_.meterPoints));
             points.push_back({"uMeterPoints", graph.import(*meterPoints_)});
         }
+        std::vector<Binding> caustics;
+        if (options_.guide) {
+            defines["GUIDED"] = "1";
+            caustics = options_.guide->bindings(graph);
+            spec.merge(options_.guide->constants());
+        }
+        if (options_.photons) {
+            const PhotonTargets& targets = scene_.info().photonTargets;
+            photonTargets_.emplace(makeBuffer(device_, "photons.targets", targets.slots));
+            caustics = {{"uPhotonTargets", graph.import(*photonTargets_), Format::R32UI}};
+            spec["PHOTON_TARGETS"] = std::int32_t(targets.slots.size());
+            spec["PHOTON_AREA"] = targets.area;
+            spec["PHOTON_EXTENT"] = targets.extent;
+        }
         std::vector<Binding> patches;
         if (options_.radiosity) {
             assert(options_.maxDepth == 0 && options_.patches != nullptr);
@@ -210,7 +230,7 @@ struct PathTracer::Impl {
             modifies = {{"uState", state}, {"uFilm", filmImage}, {"uCounters", counters}};
         for (const std::vector<Binding>& some :
              {scene_.bindings(graph, surfaceBuffers()), scene_.bindings(graph, buffers), cameraBinding(graph),
-              ends, patches, points})
+              ends, patches, points, caustics})
             reads.insert(reads.end(), some.begin(), some.end());
         modifies.insert(modifies.end(), bounces.begin(), bounces.end());
         if (wavefront_) {
@@ -218,7 +238,13 @@ struct PathTracer::Impl {
             wavefront_->declare(graph, {variant, spec, reads, modifies});
         } else {
             traceKernel_ = {kernel(options_.kernel ? *options_.kernel : shaders::trace, defines), spec};
-            graph.compute("trace", traceKernel_.kernel, {.spec = spec})
+            if (options_.photons) {
+                const KernelReflection& reflection = reflect(traceKernel_.kernel);
+                reads = bindingsOf(reflection, reads);
+                modifies = bindingsOf(reflection, modifies);
+                spec = traceKernel_.constants = constantsOf(reflection, spec);
+            }
+            graph.compute(options_.photons ? "photons" : "trace", traceKernel_.kernel, {.spec = spec})
                 .reads(reads)
                 .modifies(modifies)
                 .record([this](Commands& commands) {
@@ -320,6 +346,7 @@ struct PathTracer::Impl {
     DeviceBuffer counters_;
     std::optional<DeviceBuffer> sampleEnds_;  ///< of adaptive sampling
     std::optional<DeviceBuffer> meterPoints_;
+    std::optional<DeviceBuffer> photonTargets_;  ///< of PathTraceOptions::photons
     std::optional<BounceLayers> bounces_;
     std::optional<Wavefront> wavefront_;
     TraceParameters parameters_{};
@@ -355,7 +382,8 @@ PackOptions PathTracer::packOptions(const Scene& scene, const PathTraceOptions& 
             .sampleSurfaces = options.nextEventEstimation && !options.radiosity,
             .raysFindEnvironment = !options.whitted,
             .lights = options.lights,
-            .placing = placing};
+            .placing = placing,
+            .photons = options.photonTargets};
 }
 
 bool PathTracer::advance(std::uint32_t sampleEnd) {
@@ -386,6 +414,10 @@ void PathTracer::setCounters(const PathCounters& c) {
     assert(impl_->begun_);
     impl_->last_ = {0, 0, c.cameraRays, c.bounceRays, c.shadowRays, c.truncatedPaths, c.abandonedRays};
     impl_->counters_.upload(&impl_->last_, sizeof impl_->last_);
+}
+
+std::uint32_t PathTracer::stateFloats() const {
+    return kStateRows[impl_->options_.guide != nullptr] * 4 * 4;
 }
 
 Image PathTracer::importState(Graph& graph) {

@@ -30,6 +30,7 @@
 
 namespace helio {
 
+class CausticGuide;
 class RadiosityPass;
 
 /** What "unlimited" means for a path: longer ones are cut and counted. */
@@ -67,6 +68,10 @@ struct PathTraceOptions {
     /** Surfaces shine with what `patches` has solved and give off nothing else; for a maxDepth of 0. */
     bool radiosity = false;
     RadiosityPass* patches = nullptr;  ///< need not be there for packOptions()
+    /** Whether the scene is packed for photons, see CausticGuide. */
+    bool photonTargets = false;
+    const CausticGuide* guide = nullptr;  ///< where its tables guide paths; must outlive the tracer
+    bool photons = false;                 ///< `kernel` is photons.comp
     /** Loop turns a dispatch may start with; the result does not depend on it. lavapipe ends loops without a
      * word after 65,535 turns, of which two rays may take 16,000 each. */
     std::uint32_t turnBudget = 30000;
@@ -122,6 +127,8 @@ public:
      * brought back by the caller, after a first advance(). */
     void setCounters(const PathCounters& counters);
     Image importState(Graph& graph);
+    /** What the state has of a pixel. */
+    std::uint32_t stateFloats() const;
     FirstHits firstHits();
 
     /** With PathTraceOptions::bounces: see BounceLayers::means(). */

@@ -28,7 +28,7 @@ layout(push_constant) uniform Parameters {
     uint begin;         ///< 1: the first dispatch, uState holds nothing yet
 } parameters;
 
-/** A pixel's state between dispatches: 4 x 2 texels. */
+/** A pixel's state between dispatches: 4 x 2 texels, 4 x 3 where paths are guided. */
 layout(set = 0, binding = 0, rgba32f) uniform image2D uState;
 /** What is kept of a pixel that has samples to go: its state, between two paths or within one, and a batch with samples. */
 const uint KEPT = 1u, KEPT_BETWEEN = 2u, KEPT_BATCH = 4u;
@@ -88,6 +88,9 @@ Path startPath(PixelSampler numbers, uvec2 pixel, uint sampleIndex) {
     path.sampleIndex = sampleIndex;
     path.source = -1;
     path.lightPlace = 0;
+#ifdef GUIDED
+    path.reach = largestOf(path.throughput);
+#endif
     return path;
 }
 #endif
@@ -117,7 +120,11 @@ uint samplesToReach(uvec2 pixel) {
 
 /** The first of a pixel's texels in uState. */
 ivec2 stateTexel(uvec2 pixel) {
+#ifdef GUIDED
+    return ivec2(pixel) * ivec2(4, 3);
+#else
     return ivec2(pixel) * ivec2(4, 2);
+#endif
 }
 
 // Bits are kept as float texels: indices are stored as exact floats where they are small (depth, source).
@@ -126,7 +133,19 @@ Path loadPath(uvec2 pixel) {
     const vec4 s0 = imageLoad(uState, place), s1 = imageLoad(uState, place + ivec2(1, 0));
     const vec4 s2 = imageLoad(uState, place + ivec2(2, 0)), s3 = imageLoad(uState, place + ivec2(3, 0));
     const float lightPlace = imageLoad(uState, place + ivec2(1, 1)).w;
-    Path path = Path(s0.xyz, s1.xyz, s2.xyz, s3.xyz, s1.w, uint(s2.w), uint(s0.w), int(s3.w), int(lightPlace));
+    Path path;
+    path.origin = s0.xyz;
+    path.direction = s1.xyz;
+    path.throughput = s2.xyz;
+    path.radiance = s3.xyz;
+    path.density = s1.w;
+    path.depth = uint(s2.w);
+    path.sampleIndex = uint(s0.w);
+    path.source = int(s3.w);
+    path.lightPlace = int(lightPlace);
+#ifdef GUIDED
+    path.reach = imageLoad(uState, place + ivec2(0, 2)).x;
+#endif
 #ifdef INSTANCES
     path.source += int(path.depth >> 17) << 24;
     path.depth &= 0x1ffffu;
@@ -138,6 +157,9 @@ void storePath(uvec2 pixel, Path path) {
     const ivec2 place = stateTexel(pixel);
     imageStore(uState, place, vec4(path.origin, float(path.sampleIndex)));
     imageStore(uState, place + ivec2(1, 0), vec4(path.direction, path.density));
+#ifdef GUIDED
+    imageStore(uState, place + ivec2(0, 2), vec4(path.reach, 0.0, 0.0, 0.0));
+#endif
 #ifdef INSTANCES
     // Slots of placed meshes have 31 bits, 7 of them beside the depth.
     const int high = max(path.source, 0) >> 24;

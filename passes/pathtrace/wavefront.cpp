@@ -1,6 +1,6 @@
 #include "passes/pathtrace/wavefront.hpp"
 
-#include "engine/shader/reflection.hpp"
+#include "passes/pathtrace/kernel_interface.hpp"
 
 #include <heliograph_kernels/pathtrace.hpp>
 
@@ -18,13 +18,6 @@ constexpr std::uint64_t kShadowBytes = 3 * 16;  ///< of a pixel in uShadows
 
 /** uLengths of wavefront.glsl with nothing in any queue. */
 constexpr std::array<std::uint32_t, 12> kEmpty = {0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0};
-
-std::vector<Binding> ofKernel(const KernelReflection& kernel, const std::vector<Binding>& bindings) {
-    std::vector<Binding> found;
-    std::ranges::copy_if(bindings, std::back_inserter(found),
-                         [&](const Binding& b) { return kernel.binding(b.name) != nullptr; });
-    return found;
-}
 
 }  // namespace
 
@@ -45,15 +38,14 @@ Pass Wavefront::addPass(Graph& graph, const Interface& interface, std::string_vi
                         const Kernel& kernel) {
     const Kernel variant = interface.variant(kernel);
     const KernelReflection& reflection = reflect(variant);
-    SpecConstants constants = interface.constants;
-    std::erase_if(constants, [&](const auto& c) { return reflection.specConstant(c.first) == nullptr; });
-    Pass pass = graph.compute(std::string(name), variant, {.spec = constants});
-    pass.reads(ofKernel(reflection, interface.reads))
-        .modifies(ofKernel(reflection, interface.modifies))
-        .modifies(ofKernel(reflection, {{"uQueues", graph.import(queues_)},
-                                        {"uLengths", graph.import(lengths_)},
-                                        {"uHits", graph.import(hits_)},
-                                        {"uShadows", graph.import(shadows_)}}));
+    Pass pass =
+        graph.compute(std::string(name), variant, {.spec = constantsOf(reflection, interface.constants)});
+    pass.reads(bindingsOf(reflection, interface.reads))
+        .modifies(bindingsOf(reflection, interface.modifies))
+        .modifies(bindingsOf(reflection, {{"uQueues", graph.import(queues_)},
+                                          {"uLengths", graph.import(lengths_)},
+                                          {"uHits", graph.import(hits_)},
+                                          {"uShadows", graph.import(shadows_)}}));
     return pass;
 }
 

@@ -50,6 +50,7 @@ std::vector<std::pair<std::string, std::string>> checkpointSettings(const Render
             {"adaptive sampling", options.adaptive ? "on" : "off"},
             {"accelerator", std::to_string(int(options.accelerator))},
             {"choice of lights", std::to_string(int(options.lights))},
+            {"guiding", std::to_string(int(options.guiding))},
             {"next-event estimation", options.nextEventEstimation ? "on" : "off"},
             {"seed", std::to_string(options.seed)}};
 }
@@ -84,7 +85,7 @@ std::optional<Checkpoint> Checkpointing::resume() {
 
 void Checkpointing::restore(const Checkpoint& checkpoint) {
     const std::uint64_t pixels = std::uint64_t(film_.width()) * film_.height();
-    if (checkpoint.film.size() != pixels * 24 || checkpoint.state.size() != pixels * 32 ||
+    if (checkpoint.film.size() != pixels * 24 || checkpoint.state.size() != pixels * tracer_.stateFloats() ||
         (!checkpoint.shares.empty() && checkpoint.shares.size() != pixels))
         throw InputError(job_.options.checkpoint.string(), "", "is damaged", "render again without --resume");
     DeviceBuffer film = makeBuffer(device_, "checkpoint.film", checkpoint.film);

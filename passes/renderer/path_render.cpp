@@ -4,6 +4,7 @@
 #include "engine/film/variance.hpp"
 #include "passes/denoise/denoise.hpp"
 #include "passes/pathtrace/bounce_layers.hpp"
+#include "passes/pathtrace/caustic_guide.hpp"
 #include "passes/pathtrace/wavefront.hpp"
 #include "passes/radiosity/radiosity_pass.hpp"
 #include "passes/renderer/checkpointing.hpp"
@@ -224,6 +225,42 @@ bool solveRadiosity(RadiosityPass& pass, RenderJob& job) {
     return true;
 }
 
+/** What Guiding::Auto asks for: a picture whose paths take longer than the compilation of one more kernel,
+ * and caustics that bring noise worth the price of tables (causticVariance; docs/benchmarks.md). */
+constexpr double kLeastGuidedPaths = 1 << 20, kLeastCausticVariance = 0.5;
+
+/** Tables that guide paths to caustics, where they are asked for or pay. */
+std::optional<CausticGuide> guideCaustics(Device& device, DeviceScene& scene, const PathTraceOptions& options,
+                                          RenderJob& job) {
+    const bool decides = job.options.guiding == Guiding::Auto;
+    const double paths = double(options.size[0]) * options.size[1] * options.samples;
+    const bool possible = options.photonTargets && CausticGuide::possible(scene, options);
+    if (!possible && job.options.guiding == Guiding::On) {
+        job.result.skipped.emplace_back(
+            "guiding",
+            "nothing throws light of lamps on rough surfaces, or the paths asked for cannot be guided");
+    }
+    if (!possible || (decides && paths < kLeastGuidedPaths)) return std::nullopt;
+    std::optional<CausticGuide> guide;
+    guide.emplace(device, scene, options);
+    const Stopwatch watch;
+    guide->trace();
+    RenderResult::Caustics& caustics = job.result.caustics.emplace();
+    caustics.photons = guide->photons();
+    caustics.kept = guide->found().kept;
+    caustics.cells = guide->found().cellCount();
+    caustics.tables = guide->found().tables;
+    caustics.bytes = guide->bytes();
+    caustics.seconds = watch.seconds();
+    caustics.cpuSeconds = watch.cpuSeconds();
+    job.charge(caustics.seconds, caustics.cpuSeconds);
+    job.addTimings(guide->timings());
+    caustics.gain = guide->found().gain;
+    caustics.guided = !guide->found().empty() && (!decides || caustics.gain >= kLeastCausticVariance);
+    if (!caustics.guided) guide.reset();
+    return guide;
+}
+
 /** What limits of time and error did not bring. */
 void warnOfLimits(const FilmImages& film, RenderJob& job) {
     RenderResult& result = job.result;
@@ -285,6 +322,7 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
                       options.integrator == Integrator::AmbientOcclusion;
     if (once) result.maxDepth = std::min(result.maxDepth, 1u);
     result.radiosity = options.integrator == Integrator::Radiosity;
+    result.photonTargets = options.integrator == Integrator::Path && options.guiding != Guiding::Off;
     if (result.radiosity) result.maxDepth = 0;
     result.whitted = options.integrator == Integrator::Whitted;
     result.hemisphere = options.integrator == Integrator::Hemisphere;
@@ -314,7 +352,10 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
         radiosity.emplace(device, scene.deviceScene, std::move(*patches));
         traceOptions.patches = &*radiosity;
     }
-    PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, traceOptions, target.film());
+    const std::optional<CausticGuide> guide = guideCaustics(device, scene.deviceScene, traceOptions, job);
+    PathTraceOptions guidedOptions = traceOptions;
+    if (guide) guidedOptions.guide = &*guide;
+    PathTracer tracer(device, scene.deviceScene, view.camera, view.transform, guidedOptions, target.film());
     job.graphviz = tracer.graphviz();
     // Every kernel runs once before the clock of rendering starts: the driver compiles at the first dispatch.
     // The pass of first hits needs no second run.

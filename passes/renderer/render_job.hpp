@@ -27,13 +27,20 @@ public:
     }
     /** Set-up ends, rendering begins. */
     void beginRendering() {
-        result.setupSeconds = setup_.seconds();
-        result.setupCpuSeconds = setup_.cpuSeconds();
+        result.setupSeconds = setup_.seconds() - charged_;
+        result.setupCpuSeconds = setup_.cpuSeconds() - chargedCpu_;
         rendering_.emplace();
     }
     /** Seconds of rendering so far, those before a checkpoint included. */
-    double seconds() const { return earlier_ + (rendering_ ? rendering_->seconds() : 0); }
-    double cpuSeconds() const { return earlierCpu_ + (rendering_ ? rendering_->cpuSeconds() : 0); }
+    double seconds() const { return earlier_ + (rendering_ ? charged_ + rendering_->seconds() : 0); }
+    double cpuSeconds() const {
+        return earlierCpu_ + (rendering_ ? chargedCpu_ + rendering_->cpuSeconds() : 0);
+    }
+    /** Work of rendering that was done while setting up. */
+    void charge(double seconds, double cpuSeconds) {
+        charged_ += seconds;
+        chargedCpu_ += cpuSeconds;
+    }
     /** The render goes on from where another process left it. */
     void goOnAfter(double seconds, double cpuSeconds) {
         earlier_ = seconds;
@@ -51,7 +58,7 @@ public:
 private:
     Stopwatch setup_;
     std::optional<Stopwatch> rendering_;
-    double earlier_ = 0, earlierCpu_ = 0;
+    double earlier_ = 0, earlierCpu_ = 0, charged_ = 0, chargedCpu_ = 0;
 };
 
 }  // namespace helio

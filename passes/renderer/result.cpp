@@ -61,6 +61,17 @@ std::string RenderResult::json() const {
         if (radiosity->denseDifference)
             statistics["radiosity"]["dense_difference"] = *radiosity->denseDifference;
     }
+    if (caustics) {
+        statistics["caustics"] = {{"guided", caustics->guided},
+                                  {"photons", caustics->photons},
+                                  {"kept", caustics->kept},
+                                  {"cells", caustics->cells},
+                                  {"tables", caustics->tables},
+                                  {"bytes", caustics->bytes},
+                                  {"gain", caustics->gain},
+                                  {"seconds", caustics->seconds},
+                                  {"cpu_seconds", caustics->cpuSeconds}};
+    }
     for (const MeterReading& meter : meters) {
         statistics["meters"].push_back({{"name", meter.name},
                                         {"quantity", meter.quantityName()},

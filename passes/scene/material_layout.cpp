@@ -114,6 +114,24 @@ bool hasWideLobes(const Material& m) {
     return hasRoughFacets(m) || !(metal || glass) || hasSheen(m) || (m.clearcoat > 0.0f && !smoothCoat);
 }
 
+bool throwsCaustics(const Material& m) {
+    constexpr float kNarrow = 0.09f;  // the alpha of a roughness of 0.3
+    if (m.unlit || m.alphaMode == AlphaMode::Blend) return false;
+    if (m.scattering) {
+        switch (m.scattering->model) {
+            case Scattering::Model::Mirror:
+            case Scattering::Model::ThinDielectric:
+                return true;
+            case Scattering::Model::Dielectric:
+            case Scattering::Model::Conductor:
+                return std::max(m.scattering->alpha.x, m.scattering->alpha.y) <= kNarrow;
+            default:
+                return false;
+        }
+    }
+    return (m.metallic >= 0.5f || m.transmission >= 0.25f) && m.roughness * m.roughness <= kNarrow;
+}
+
 std::vector<SampledTexture> sampledTextures(const Material& m, bool occlusion) {
     std::vector<SampledTexture> result;
     const auto add = [&](const TextureUse& use, std::uint32_t row, bool color, bool needed) {

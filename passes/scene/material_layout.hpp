@@ -52,6 +52,9 @@ bool hasRoughFacets(const Material& material);
 /** Whether some of its light is scattered into a solid angle, not by mirrors and smooth glass alone. */
 bool hasWideLobes(const Material& material);
 
+/** Whether light goes on from it in a narrow cone, as from mirrors and glass, much as it came. */
+bool throwsCaustics(const Material& material);
+
 /** A texture that kernels sample. */
 struct SampledTexture {
     const TextureUse* use = nullptr;

@@ -320,6 +320,8 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
         if (material < scene.materials.size() && scene.materials[material].emission != glm::vec3(0.0f))
             packed.writtenOutEmitters.push_back(order[slot]);
     }
+    if (options.photons && !trees)
+        packed.photonTargets = pack::photonTargets(scene, positions, surfaces, order, packed);
     if (trees) trees->append(positions, surfaces, packed);
     const NotShown absent = materialsNotShown(scene, materialUsed, options.occlusion);
     packed.skipped.insert(packed.skipped.end(), absent.anywhere.begin(), absent.anywhere.end());

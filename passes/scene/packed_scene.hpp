@@ -64,6 +64,15 @@ inline constexpr std::uint32_t kDiffuseEnvironmentWidth = 64, kDiffuseEnvironmen
  * traversal. */
 enum class Placing : std::uint8_t { Flatten, WhereItSaves, Always };
 
+/** Where photons that could make caustics set out to: mirrors, glass and what is nearly as smooth. Empty
+ * where a scene has none, no lamp that rays can find, or no rough surface to receive the light. */
+struct PhotonTargets {
+    std::vector<std::uint32_t>
+        slots;         ///< each stands for an equal area; large triangles are there several times
+    float area = 0;    ///< of all
+    float extent = 0;  ///< longer than any way within the scene
+};
+
 struct PackOptions {
     /** Triangles are put in the order of a tree's leaves and the tree is packed; else they stay in scene
      * order and `nodes` is empty. */
@@ -92,6 +101,8 @@ struct PackOptions {
     /** Occlusion textures are packed, which dim the light of surroundings that nothing is traced to, and
      * lightmaps. */
     bool occlusion = false;
+    /** PackedScene::photonTargets is made. */
+    bool photons = false;
     /** PackedScene::diffuseEnvironment is made. */
     bool diffuseEnvironment = false;
     /** The point of the world that becomes the packed scene's origin, so that floats resolve a scene that
@@ -167,7 +178,8 @@ struct PackedScene {
     /** Radiance of the image over all directions, of what light sampling draws: W/m^2, mean over RGB. */
     double environmentPower = 0;
     std::array<double, 6> environmentIrradiance{};  ///< of it, on surfaces that face +x, -x, +y, ...
-    std::uint32_t triangleCount = 0;                ///< slots: with shapes and placements
+    PhotonTargets photonTargets;
+    std::uint32_t triangleCount = 0;  ///< slots: with shapes and placements
     std::uint32_t shapeCount = 0;
     std::uint32_t listedShapes = 0;  ///< shapes in the last slots, which are in no tree
     bool shapesInTree = false, spheres = false, flatShapes = false, tori = false;
@@ -289,6 +301,11 @@ void environment(const Scene& scene, const PackOptions& options, PackedScene& pa
  * table's own steps leave about 0.1 % of its range. */
 std::vector<glm::vec4> diffuseEnvironment(std::span<const glm::vec3> texels, std::uint32_t width,
                                           std::uint32_t height);
+
+/** PackedScene::photonTargets; `order`: the g of every slot. */
+PhotonTargets photonTargets(const Scene& scene, std::span<const glm::vec3> positions,
+                            std::span<const Surface> surfaces, std::span<const std::uint32_t> order,
+                            const PackedScene& packed);
 
 /** "WHAT", "WHY" of what materials ask for and kernels do not show, once each; of the materials in use alone.
  */

@@ -137,10 +137,10 @@ void checkPipelineOptions(const CLI::App& command, const RenderOptions& options)
     }
     // --spp and --seed stay: scripts give them to every pipeline, and the samples are reported as left out.
     for (const char* option :
-         {"--time",        "--max-error", "--adaptive", "--denoise",    "--error-map",
-          "--max-depth",   "--filter",    "--sampler",  "--integrator", "--patches",
-          "--roulette",    "--survival",  "--lights",   "--no-nee",     "--normal-mapping",
-          "--accelerator", "--scheduler", "--bounces",  "--checkpoint", "--resume"}) {
+         {"--time",    "--max-error",  "--adaptive",       "--denoise",     "--error-map", "--max-depth",
+          "--filter",  "--sampler",    "--integrator",     "--patches",     "--roulette",  "--survival",
+          "--lights",  "--no-nee",     "--normal-mapping", "--accelerator", "--scheduler", "--guiding",
+          "--bounces", "--checkpoint", "--resume"}) {
         if (command.count(option) > 0) {
             throw CLI::ValidationError(
                 option,

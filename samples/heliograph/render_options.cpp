@@ -214,6 +214,11 @@ void addPathOptions(CLI::App* command, RenderArguments& arguments) {
                                "auto (default); bvh, sbvh (with spatial splits), lbvh (built on the device), "
                                "brute-force, grid, octree, "
                                "kd-tree, bsp: same image, other times");
+    addChoice<Guiding>(
+        command, "--guiding", options.guiding,
+        {{"auto", Guiding::Auto}, {"on", Guiding::On}, {"off", Guiding::Off}},
+        "Photons show paths the way to caustics: auto (default), where that pays; on, wherever "
+        "there are mirrors or glass, and lamps; off: same image, other noise");
     addChoice<Scheduler>(command, "--scheduler", options.scheduler,
                          {{"auto", Scheduler::Auto},
                           {"megakernel", Scheduler::Megakernel},

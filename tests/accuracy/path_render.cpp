@@ -1,10 +1,12 @@
 #include "tests/accuracy/path_render.hpp"
 
 #include "passes/film/film.hpp"
+#include "passes/pathtrace/caustic_guide.hpp"
 #include "passes/scene/device_scene.hpp"
 #include "tests/support/device.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace helio::test {
 
@@ -30,8 +32,16 @@ Traced trace(Scene scene, const PathTraceOptions& options, std::uint32_t samples
         Plan plan = graph.compile();
         plan.wait(plan.execute());
     }
-    PathTracer tracer(device(), uploaded, scene.cameras[std::size_t(placed.camera)], placed.transform,
-                      options, film);
+    std::optional<CausticGuide> guide;
+    PathTraceOptions guided = options;
+    if (options.photonTargets && CausticGuide::possible(uploaded, options)) {
+        guide.emplace(device(), uploaded, options);
+        guide->trace();
+        result.guideTables = guide->found().tables;
+        if (!guide->found().empty()) guided.guide = &*guide;
+    }
+    PathTracer tracer(device(), uploaded, scene.cameras[std::size_t(placed.camera)], placed.transform, guided,
+                      film);
     for (std::uint32_t end = std::min(step, samples);; end = std::min(end + step, samples)) {
         while (!tracer.advance(end)) {
         }

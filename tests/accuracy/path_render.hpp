@@ -18,12 +18,14 @@ struct Traced {
     std::uint64_t rejected = 0;
     PathCounters counters;
     FirstHits hits;
+    std::size_t guideTables = 0;  ///< that guided paths; 0 where they went unguided
 };
 
 /** Square pictures of independent samples, whose variance the statistics below take. */
 PathTraceOptions independentOptions(std::uint32_t size, std::uint32_t maxDepth = kUnlimitedDepth);
 
-/** Traces `samples` per pixel in steps of `step` through the camera `name`. */
+/** Traces `samples` per pixel in steps of `step` through the camera `name`; guided to caustics where the
+ * options have photonTargets and the scene allows it. */
 Traced trace(Scene scene, const PathTraceOptions& options, std::uint32_t samples, std::uint32_t step = 64,
              const std::string& camera = {});
 

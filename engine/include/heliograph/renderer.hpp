@@ -47,6 +47,11 @@ enum class Scheduler : std::uint8_t { Auto, Megakernel, Wavefront };
  * those with a clear coat are folded still. */
 enum class NormalMapping : std::uint8_t { Folded, Facets };
 
+/** Whether paths at rough surfaces also set out to where photons say that light comes from by way of mirrors
+ * and glass, which next-event estimation cannot find. Changes noise and time, not the mean. Auto: where
+ * photons of this very scene show that it pays. */
+enum class Guiding : std::uint8_t { Auto, On, Off };
+
 /** State of a running render, for progress displays. */
 struct Progress {
     std::string stage;          ///< "load", "compile" (before and after set-up), "render"
@@ -164,6 +169,7 @@ struct RenderOptions {
     AcceleratorKind accelerator = AcceleratorKind::Auto;  ///< changes the time, not the image
     Scheduler scheduler = Scheduler::Auto;                ///< of the path pipeline; the same
     NormalMapping normalMapping = NormalMapping::Folded;  ///< of the path pipeline
+    Guiding guiding = Guiding::Auto;                      ///< of Integrator::Path
     std::uint32_t seed = 0;
     std::string camera;     ///< name or index; empty for the first
     double frameTime = 0;   ///< seconds; the scene is shown as posed() makes it
@@ -282,6 +288,17 @@ struct RenderResult {
         std::optional<double> denseDifference;
     };
     std::optional<Radiosity> radiosity;
+    /** The tables that guide paths to caustics, where photons were traced for them. */
+    struct Caustics {
+        bool guided = false;  ///< else what photons found did not pay, and paths went unguided
+        std::uint64_t photons = 0;
+        std::uint64_t kept = 0;   ///< of them, that came to a rough surface by way of mirrors or glass
+        std::uint64_t cells = 0;  ///< of the grid over the places where they did
+        std::uint64_t tables = 0, bytes = 0;
+        double gain = 0;  ///< what the rule of Guiding::Auto goes by: see docs/rendering.md
+        double seconds = 0, cpuSeconds = 0;  ///< of photons and tables; rendering times include them
+    };
+    std::optional<Caustics> caustics;
     /** Of the scene's meters, in the order of their nodes; not of those under `skipped`. */
     std::vector<MeterReading> meters;
     /** Relative standard error of each pixel, R G B: the root of its expected part in relMSE. Empty unless
