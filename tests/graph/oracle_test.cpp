@@ -1,6 +1,7 @@
 /** @file Plans of random graphs against oracles that share no code with the compiler. */
 #include "tests/graph/hazard_simulator.hpp"
 #include "tests/graph/random_graph.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 namespace helio::graph {
 namespace {
 
-constexpr std::uint32_t graphCount = 10000;
+constexpr std::uint32_t graphCount = helio::test::kSanitized ? 2000 : 10000;
 
 std::string firstFault(const HazardSimulator& simulator) {
     return simulator.faults().empty() ? "" : simulator.faults().front();

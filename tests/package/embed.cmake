@@ -18,7 +18,8 @@ if(MODE STREQUAL "install")
     set(from -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix)
 else()
     set(type Debug)  # the quickest to build, and a configuration no other test builds
-    set(from -DHELIOGRAPH_SOURCE_DIR=${SOURCE_DIR} -DHELIOGRAPH_WERROR=${WERROR} -DCMAKE_CXX_FLAGS_DEBUG=-g0)
+    set(from -DHELIOGRAPH_SOURCE_DIR=${SOURCE_DIR} -DHELIOGRAPH_WERROR=${WERROR} -DCMAKE_CXX_FLAGS_DEBUG=-g0
+        -DCMAKE_UNITY_BUILD=ON)
     find_program(ccache ccache)
     if(ccache)
         list(APPEND from -DCMAKE_CXX_COMPILER_LAUNCHER=${ccache})

@@ -3,6 +3,7 @@
 #include "engine/scene/comparators.hpp"
 
 #include "tests/support/meshes.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -132,7 +133,8 @@ void forPoints(const test::Corners& corners,
 }
 
 TEST(Comparators, CellsFillTheRootAndReferToAllTrianglesInThem) {
-    for (const test::Corners& corners : {test::octasphere(4), test::cloud(3000)}) {
+    for (const test::Corners& corners :
+         {test::octasphere(test::kSanitized ? 3 : 4), test::cloud(test::kSanitized ? 600 : 3000)}) {
         const Input input(corners);
         const double root = [&] {
             const glm::dvec3 e = glm::dvec3(input.root.upper) - glm::dvec3(input.root.lower);

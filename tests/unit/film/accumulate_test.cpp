@@ -1,5 +1,6 @@
 // The film's running mean and variance against sums in extended precision. Literals here are floats.
 #include "engine/core/shared.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,8 +24,11 @@ struct Outcome {
     double storedMean = 0;  ///< with the low words
 };
 
-/// Feeds a million samples in batches of the given size, and sums them exactly.
-Outcome accumulate(int batchSize, const std::function<float(Random&, int)>& sample, int count = 1000000) {
+/// A million but under sanitizers.
+constexpr int kSamples = test::kSanitized ? 50000 : 1000000;
+
+/// Feeds kSamples in batches of the given size, and sums them exactly.
+Outcome accumulate(int batchSize, const std::function<float(Random&, int)>& sample, int count = kSamples) {
     Outcome outcome;
     outcome.pixel = emptyFilmPixel();
     Random random(3);
@@ -65,7 +69,7 @@ void expectExact(const char* what, const std::function<float(Random&, int)>& sam
             << what << " " << batchSize;
         EXPECT_NEAR(filmVarianceOfMean(o.pixel).y, 4 * variance, 4 * tolerance * variance) << what;
         EXPECT_EQ(filmMean(o.pixel).z, -filmMean(o.pixel).x) << what;
-        EXPECT_EQ(filmCount(o.pixel), 1000000);
+        EXPECT_EQ(filmCount(o.pixel), kSamples);
     }
 }
 

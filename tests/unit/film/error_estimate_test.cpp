@@ -159,6 +159,21 @@ TEST(ErrorEstimate, HeavyTailsAndFewSamplesAreNotReliable) {
     EXPECT_FALSE(estimateError(synthesize(48, 4, flat, normalNoise, 1).film).reliable);
 }
 
+/** Samples that balance within most halves and not within a few: variances do not tell, only the halves'
+ * difference. */
+TEST(ErrorEstimate, HeavyTailsOfTheHalvesAloneAreNotReliable) {
+    for (const bool heavy : {false, true}) {
+        Synthetic s = synthesize(64, 64, flat, normalNoise, 3);
+        Random random(4);
+        for (std::size_t i = 0; i < s.film.difference.size(); i += 4) {
+            const bool rare = std::uniform_real_distribution<>()(random) < 0.04;
+            for (std::size_t c = 0; c < 3; ++c)
+                s.film.difference[i + c] *= !heavy ? 1.0f : rare ? 4.8f : 0.3f;
+        }
+        EXPECT_EQ(estimateError(s.film).reliable, !heavy);
+    }
+}
+
 TEST(ErrorEstimate, OneFireflyIsNotReliableAndDoesNotHideItself) {
     Synthetic s = synthesize(64, 64, flat, normalNoise, 2);
     const ErrorEstimate before = estimateError(s.film);
