@@ -340,11 +340,12 @@ ErrorEstimate estimateError(const FilmImages& images) {
     double fewest = HUGE_VAL;
     for (std::size_t i = 0; i < images.mean.size(); i += 4)
         fewest = std::min(fewest, double(images.mean[i + 3]));
-    const double stray = strayError(images) / result.relmse;
-    const bool straysMatter =
-        stray > largestStray || (fewest < samplesAtLamps && stray > strayShare * statistical);
+    const auto straysMatter = [&] {
+        const double stray = strayError(images) / result.relmse;
+        return stray > largestStray || (fewest < samplesAtLamps && stray > strayShare * statistical);
+    };
     result.reliable = fewest >= 8 && statistical < 0.3 && denominator < 0.5 &&
-                      terms.squares <= heaviestTail * terms.neighbours && !straysMatter;
+                      terms.squares <= heaviestTail * terms.neighbours && !straysMatter();
     return result;
 }
 

@@ -87,20 +87,24 @@ TEST_P(BothMappings, LoseNothingAtAnyTilt) {
     }
 }
 
-/** Radiance towards a view at an angle of plates in a sun of irradiance cos, in the plane x = 0. */
-Traced sunlit(const Plates& plates, double viewDegrees, double sunDegrees, NormalMapping mapping) {
-    Plates p = plates;
-    Scene& scene = p.b.scene;
+/** The node of a light from +z of irradiance 1, the scene's first. */
+Node& addSun(Scene& scene) {
     PunctualLight sun;
     sun.type = PunctualLight::Type::Directional;
     sun.intensity = glm::vec3(1);
     scene.lights.push_back(sun);
-    Node node;
+    scene.roots.push_back(int(scene.nodes.size()));
+    Node& node = scene.nodes.emplace_back();
     node.light = 0;
+    return node;
+}
+
+/** Radiance towards a view at an angle of plates in a sun of irradiance cos, in the plane x = 0. */
+Traced sunlit(const Plates& plates, double viewDegrees, double sunDegrees, NormalMapping mapping) {
+    Plates p = plates;
+    Scene& scene = p.b.scene;
     // view() looks from (0, -sin, cos).
-    node.rotation = glm::angleAxis(float(sunDegrees * kPi / 180), glm::vec3(1, 0, 0));
-    scene.nodes.push_back(node);
-    scene.roots.push_back(int(scene.nodes.size()) - 1);
+    addSun(scene).rotation = glm::angleAxis(float(sunDegrees * kPi / 180), glm::vec3(1, 0, 0));
     p.view(viewDegrees);
     return p.render(256, true, mapping);
 }
@@ -197,14 +201,7 @@ TEST(NormalMaps, LeanAlongTheTextureAndLoseNothing) {
     Primitive& primitive = scene.meshes[std::size_t(given)].primitives[0];
     primitive.normals.assign(6, glm::vec3(0, 0, 1));
     primitive.tangents.assign(6, glm::vec4(0, -1, 0, 1));
-    PunctualLight sun;
-    sun.type = PunctualLight::Type::Directional;
-    sun.intensity = glm::vec3(1);
-    scene.lights.push_back(sun);
-    Node node;
-    node.light = 0;
-    scene.nodes.push_back(node);
-    scene.roots.push_back(int(scene.nodes.size()) - 1);
+    addSun(scene);
     const std::size_t sunNode = scene.nodes.size() - 1;
     p.view(10);
     // Light from (sin a, 0, cos a). Low light also reaches the lean normal by its mirror image under the
