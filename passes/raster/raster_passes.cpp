@@ -13,7 +13,7 @@ constexpr int kCellLevels = 6;
 constexpr std::uint64_t kStateBytes = 96;
 constexpr std::uint64_t kLargeGroups = 16, kClipGroups = 28, kFillGroups = 40, kTileGroups = 52,
                         kMoreGroups = 64, kFreshGroups = 80;
-constexpr std::uint32_t kTallTiles = 4;         // of a workgroup of rasterTileTall
+constexpr std::uint32_t kNarrowTiles = 4;       // of a workgroup of rasterTileNarrow
 constexpr std::uint32_t kSetupTriangles = 512;  // of a workgroup of set-up
 
 std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
@@ -76,7 +76,7 @@ std::function<RasterPush(std::uint32_t, std::uint32_t)> RasterPasses::pushOf() c
 }
 
 Pass RasterPasses::setUp(const Kernel& plain, ComputeOptions options) {
-    options.spec["LANES"] = isTall() ? 16u : 64u;
+    options.spec["LANES"] = isNarrow() ? 16u : 64u;
     return graph_.compute("raster.setup", peeling(plain), options)
         .reads({{"uTriangles", triangles_.buffer}})
         .reads(limit_)
@@ -138,7 +138,7 @@ void RasterPasses::listBatch(bool isFirst, std::optional<std::uint64_t> once) {
         .indirect(state_)
         .record([push, state = state_](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
     ComputeOptions grouped;
-    grouped.spec["GROUP_TILES"] = isPaired() && isTall() ? kTallTiles : 1u;
+    grouped.spec["GROUP_TILES"] = isFourfold() ? kNarrowTiles : 1u;
     grouped.spec["MAY_START_FRESH"] = isPaired() && isFirst;
     Pass scan = graph_.compute("raster.scan", shaders::rasterScan, grouped)
                     .reads({{"uCounts", counts_}})
@@ -179,7 +179,7 @@ void RasterPasses::drawTiles(bool isFirst) {
     const auto drawPaired = [&](const char* name, bool fresh, std::uint64_t groups) {
         ComputeOptions options = projection();
         options.spec["FRESH"] = fresh;
-        drawTiles(name, isTall() ? shaders::rasterTileTall : shaders::rasterTile, options, groups)
+        drawTiles(name, isFourfold() ? shaders::rasterTileNarrow : shaders::rasterTile, options, groups)
             .modifies({{"uVisibilityTexels", target_.visibility, window_, Format::RGBA32UI}});
     };
     const auto drawSegments = [&](const char* name, std::uint32_t firstSegment, std::uint64_t groups) {

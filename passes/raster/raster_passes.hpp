@@ -50,7 +50,9 @@ private:
 
     /** Two keys are read and written at a time. */
     bool isPaired() const { return view_->width % 2 == 0; }
-    bool isTall() const { return options_.stripRows == 8; }
+    bool isNarrow() const { return options_.tileLanes == 8; }
+    /** Four keys are written at a time. */
+    bool isFourfold() const { return isNarrow() && view_->width % 4 == 0; }
 
     Graph& graph_;
     RasterTriangles triangles_;

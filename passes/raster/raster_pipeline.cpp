@@ -36,10 +36,10 @@ void requireRasterCapabilities(const DeviceInfo& device) {
 RasterPipeline::RasterPipeline(const Device& device, const RasterOptions& options)
     : options_(options), maxStorageBufferRange_(device.info().maxStorageBufferRange) {
     assert(options.batch > 0);
-    assert(options.stripRows == 0 || options.stripRows == 4 || options.stripRows == 8);
-    const bool isNarrow = device.info().subgroupSize <= 16;
-    if (options_.stripRows == 0) options_.stripRows = isNarrow ? 8 : 4;
-    if (!isNarrow || options_.stripRows != 8) options_.gather = false;
+    assert(options.tileLanes == 0 || options.tileLanes == 8 || options.tileLanes == 32);
+    const bool isNarrow = device.info().subgroupSize <= 8;
+    if (options_.tileLanes == 0 || !isNarrow) options_.tileLanes = isNarrow ? 8 : 32;
+    if (options_.tileLanes != 8) options_.gather = false;
     requireRasterCapabilities(device.info());
     // A record is 64 bytes and all of a batch must be in reach of one binding; indirect dispatches have at
     // most 65,535 workgroups of 64.

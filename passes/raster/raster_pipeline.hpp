@@ -35,9 +35,9 @@ struct RasterOptions {
     std::uint32_t batch = 1u << 18;
     /** Most entries that the lists of tiles hold at a time; results do not depend on it. */
     std::uint64_t entries = 1u << 24;
-    /** Rows of two columns that an invocation of the tile kernel owns, 4 or 8; 0 chooses by the device's
-     * subgroups. Results do not depend on it. */
-    std::uint32_t stripRows = 0;
+    /** Invocations that draw a tile, 32 or, where subgroups have at most so many, 8; 0 chooses by the
+     * device's subgroups. Results do not depend on it. */
+    std::uint32_t tileLanes = 0;
     /** Whether subgroups set up triangles until all their invocations have some to draw: where few triangles
      * cover a pixel. None: where they outnumber the pixels. Only narrow subgroups do. Results do not depend
      * on it. */

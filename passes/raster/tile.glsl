@@ -1,8 +1,8 @@
-// The tile kernel: a workgroup owns 16x16 pixels and one segment of the tile's lists; an invocation owns ROWS rows of
-// two columns, in registers, and eight neighbours a strip. The invocations of a subgroup set up a triangle each, keep
-// those that may touch the subgroup's strips and that none which covers them hides, and then draw these all together,
-// handing the set-ups round by shuffles. No barriers, and no atomics but for segments after the first and images of odd
-// width (TILE_SHARED): even masked out, they cost more than drawing.
+// The tile kernel: 16x16 pixels and one segment of the tile's lists; an invocation owns ROWS rows of COLUMNS pixels, in
+// registers, in each of PARTS parts of the tile. The invocations of a subgroup set up a triangle each, keep those that
+// none which covers their pixels hides, and then draw all that may touch a part together, handing the set-ups round by
+// shuffles. No barriers, and no atomics but for segments after the first and images of odd width (TILE_SHARED): even
+// masked out, they cost more than drawing.
 #ifndef PASSES_RASTER_TILE_GLSL
 #define PASSES_RASTER_TILE_GLSL
 #include "shaders/raster/view.glsl"
@@ -17,16 +17,28 @@ layout(constant_id = 125) const bool FRESH = false;  ///< nothing has been drawn
 #ifndef TILES
 #define TILES 1  // of a workgroup; more where its subgroups are no larger than what a tile needs
 #endif
-const int LANES = 128 / ROWS;  // of a tile: 8 pairs of columns, 16 / ROWS strips
-layout(local_size_x = 128 / ROWS * TILES) in;
+#ifndef COLUMNS
+#define COLUMNS 2  // of an invocation's pixels
+#endif
+#if COLUMNS == 4
+#define Keys u64vec4
+#else
+#define Keys u64vec2
+#endif
+#ifndef PARTS
+#define PARTS 1  // of a tile, one below the other: an invocation has ROWS rows in each
+#endif
+const int LANES = 256 / (ROWS * COLUMNS * PARTS);  // of a tile
+const int ACROSS = 16 / COLUMNS, ACROSS_BITS = COLUMNS == 4 ? 2 : 3;  // of them side by side
+layout(local_size_x = 256 / (ROWS * COLUMNS * PARTS) * TILES) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer uRecords;
 layout(set = 0, binding = 1) uniform usamplerBuffer uEntries;
 layout(set = 0, binding = 2) uniform usamplerBuffer uStarts;
 #ifdef TILE_SHARED
 layout(set = 0, binding = 3, std430) buffer uVisibility { uint64_t visibility[]; };
 #else
-// Two neighbouring pixels at a time: the image's width is even.
-layout(set = 0, binding = 3, std430) buffer uVisibility { u64vec2 visibility[]; };
+// Neighbouring pixels at a time: the image's width is a multiple of COLUMNS.
+layout(set = 0, binding = 3, std430) buffer uVisibility { Keys visibility[]; };
 layout(set = 0, binding = 5, rgba32ui) uniform uimageBuffer uVisibilityTexels;  ///< the same, to read: faster on CPUs
 #endif
 layout(set = 0, binding = 4, std430) buffer uCounters { uint64_t counters[]; };
@@ -90,13 +102,14 @@ bool covers(TileTriangle t, ivec2 first, ivec2 extent) {
 }
 
 int mostOfSubgroup(int value) {
-#if ROWS == 8
-    // Subgroups are narrow: a few shuffles cost less than the driver's loop over invocations.
-    [[unroll]] for (uint step = 1u; step < 16u; step *= 2u) {
-        int other = subgroupShuffleXor(value, step);
-        value = step < gl_SubgroupSize ? max(value, other) : value;
-    }
-    return value;
+#if PARTS == 2
+    // Subgroups are narrow: three shuffles cost less than the driver's loop over invocations.
+    int other = subgroupShuffleXor(value, 1u);
+    value = gl_SubgroupSize > 1u ? max(value, other) : value;
+    other = subgroupShuffleXor(value, 2u);
+    value = gl_SubgroupSize > 2u ? max(value, other) : value;
+    other = subgroupShuffleXor(value, 4u);
+    return gl_SubgroupSize > 4u ? max(value, other) : value;
 #else
     return subgroupMax(value);
 #endif
@@ -126,20 +139,71 @@ uint64_t coveredKey(TileTriangle t, ivec3 edge, double z) {
     return visibilityKey(depth, t.id);
 }
 
-/// Writes two neighbouring pixels' keys where they are nearer than what is there.
-void store(ivec2 pixel, ivec2 size, u64vec2 best) {
-    bool insideY = pixel.y < size.y, inside0 = insideY && pixel.x < size.x, inside1 = insideY && pixel.x + 1 < size.x;
+/// Writes neighbouring pixels' keys where they are nearer than what is there.
+void store(ivec2 pixel, ivec2 size, Keys best) {
     int index = pixel.y * size.x + pixel.x;
-    bool hit0 = inside0 && unpackUint2x32(best.x).y != 0u, hit1 = inside1 && unpackUint2x32(best.y).y != 0u;
+    bool hit[COLUMNS], any_ = false;
+    [[unroll]] for (int c = 0; c < COLUMNS; ++c) {
+        hit[c] = pixel.y < size.y && pixel.x + c < size.x && unpackUint2x32(best[c]).y != 0u;
+        any_ = any_ || hit[c];
+    }
 #ifdef TILE_SHARED
-    if (hit0) atomicMax(visibility[index], best.x);
-    if (hit1) atomicMax(visibility[index + 1], best.y);
+    [[unroll]] for (int c = 0; c < COLUMNS; ++c)
+        if (hit[c]) atomicMax(visibility[index + c], best[c]);
 #else
-    uvec4 seen = uvec4(0u);
-    if (!FRESH) seen = imageLoad(uVisibilityTexels, inside0 ? index >> 1 : 0);
-    u64vec2 old = u64vec2(packUint2x32(seen.xy), packUint2x32(seen.zw));
-    if (hit0 || hit1) visibility[index >> 1] = u64vec2(hit0 ? max(best.x, old.x) : old.x, hit1 ? max(best.y, old.y) : old.y);
+    bool inside = pixel.y < size.y && pixel.x < size.x;
+    Keys keys;
+    [[unroll]] for (int c = 0; c < COLUMNS; c += 2) {
+        uvec4 seen = uvec4(0u);
+        if (!FRESH) seen = imageLoad(uVisibilityTexels, inside ? (index + c) / 2 : 0);
+        u64vec2 old = u64vec2(packUint2x32(seen.xy), packUint2x32(seen.zw));
+        keys[c] = hit[c] ? max(best[c], old.x) : old.x;
+        keys[c + 1] = hit[c + 1] ? max(best[c + 1], old.y) : old.y;
+    }
+    if (any_) visibility[index / COLUMNS] = keys;
 #endif
+}
+
+#ifdef PEEL
+/// The limits of neighbouring pixels; of ones in the image those beyond it.
+Keys keysAt(ivec2 pixel, ivec2 size) {
+    Keys keys;
+    [[unroll]] for (int c = 0; c < COLUMNS; ++c) {
+        ivec2 inside = min(pixel + ivec2(c, 0), size - 1);
+        keys[c] = packUint2x32(texelFetch(uLimit, inside.y * size.x + inside.x).xy);
+    }
+    return keys;
+}
+#define LIMIT(keys) , keys
+#else
+#define LIMIT(keys)
+#endif
+
+/// Draws the triangles that invocations keep over the pixels from `at` on.
+void drawKept(TileTriangle mine, bool kept, ivec2 at, inout Keys best[ROWS] LIMIT(Keys limit[ROWS])) {
+    uint pending = subgroupBallot(kept).x;
+    for (; pending != 0u; pending &= pending - 1u) {
+        TileTriangle t = shuffleTriangle(mine, uint(findLSB(pending)));
+        ivec3 edge = t.edge + t.right * at.x + t.down * at.y;
+        double start[COLUMNS], z[COLUMNS];
+        [[unroll]] for (int c = 0; c < COLUMNS; ++c) {
+            start[c] = t.depth + t.depthRight * double(at.x + c);
+            z[c] = start[c] + t.depthDown * double(at.y);
+        }
+        [[unroll]] for (int k = 0; k < ROWS; ++k) {
+            ivec3 across = edge;
+            [[unroll]] for (int c = 0; c < COLUMNS; ++c) {
+                uint64_t key = coveredKey(t, across, z[c]);
+#ifdef PEEL
+                key = key < limit[k][c] ? key : 0ul;
+#endif
+                best[k][c] = max(best[k][c], key);
+                across += t.right;
+                z[c] += t.depthDown;
+            }
+            edge += t.down;
+        }
+    }
 }
 
 void main() {
@@ -174,17 +238,18 @@ void main() {
     uint segment = gl_WorkGroupID.z + FIRST_SEGMENT;
     uint begin = min(segment * SEGMENT, total), end = min(begin + SEGMENT, total);
 
-    ivec2 origin = tile * TILE_SIZE, at = ivec2(2 * (lane & 7), (lane >> 3) * ROWS);
-    ivec2 corner = ivec2(0, (firstLane >> 3) * ROWS);
-    ivec2 extent = ivec2(15, max(int(gl_SubgroupSize) >> 3, 1) * ROWS - 1);
-    u64vec2 best[ROWS];
-    [[unroll]] for (int k = 0; k < ROWS; ++k) best[k] = u64vec2(0ul);
+    ivec2 origin = tile * TILE_SIZE, at = ivec2(COLUMNS * (lane & (ACROSS - 1)), (lane >> ACROSS_BITS) * ROWS);
+    ivec2 corner = ivec2(0, (firstLane >> ACROSS_BITS) * ROWS);
+    ivec2 partExtent = ivec2(15, max(int(gl_SubgroupSize) >> ACROSS_BITS, 1) * ROWS - 1);
+    ivec2 extent = partExtent + ivec2(0, (PARTS - 1) * (TILE_SIZE / PARTS));
+    const ivec2 lower = ivec2(0, TILE_SIZE / PARTS);
+    Keys best0[ROWS], best1[ROWS];
+    [[unroll]] for (int k = 0; k < ROWS; ++k) best0[k] = best1[k] = Keys(0ul);
 #ifdef PEEL
-    u64vec2 limit[ROWS];
+    Keys limit0[ROWS], limit1[ROWS];
     [[unroll]] for (int k = 0; k < ROWS; ++k) {
-        ivec2 pixel = min(origin + at + ivec2(0, k), size - 1);
-        int index = pixel.y * size.x + pixel.x, next = pixel.y * size.x + min(pixel.x + 1, size.x - 1);
-        limit[k] = u64vec2(packUint2x32(texelFetch(uLimit, index).xy), packUint2x32(texelFetch(uLimit, next).xy));
+        limit0[k] = keysAt(origin + at + ivec2(0, k), size);
+        limit1[k] = keysAt(origin + at + lower + ivec2(0, k), size);
     }
 #endif
     // A workgroup may be smaller than a subgroup.
@@ -200,38 +265,21 @@ void main() {
         TileTriangle mine = setUp(unpackRecord(texelFetch(uRecords, texel), texelFetch(uRecords, texel + 1),
                                                texelFetch(uRecords, texel + 2), texelFetch(uRecords, texel + 3)),
                                   origin);
-        bool kept = valid && mayTouch(mine, corner, extent);
 #ifndef PEEL
         DepthRange range = depthRange(mine, corner, extent);
-        covered = max(covered, mostOfSubgroup(kept && covers(mine, corner, extent) ? range.farthest : 0));
-        kept = kept && range.nearest >= covered;
+        bool whole = valid && covers(mine, corner, extent);
+        covered = max(covered, mostOfSubgroup(whole ? range.farthest : 0));
+        valid = valid && range.nearest >= covered;
 #endif
-        uint pending = subgroupBallot(kept).x;
-        for (; pending != 0u; pending &= pending - 1u) {
-            TileTriangle t = shuffleTriangle(mine, uint(findLSB(pending)));
-            ivec3 edge = t.edge + t.right * at.x + t.down * at.y;
-            double left = t.depth + t.depthRight * double(at.x), right = t.depth + t.depthRight * double(at.x + 1);
-            double gain = t.depthDown * double(at.y), zLeft = left + gain, zRight = right + gain;
-            [[unroll]] for (int k = 0; k < ROWS; ++k) {
-                u64vec2 key = u64vec2(coveredKey(t, edge, zLeft), coveredKey(t, edge + t.right, zRight));
-#ifdef PEEL
-                key = u64vec2(key.x < limit[k].x ? key.x : 0ul, key.y < limit[k].y ? key.y : 0ul);
+        drawKept(mine, valid && mayTouch(mine, corner, partExtent), at, best0 LIMIT(limit0));
+#if PARTS == 2
+        drawKept(mine, valid && mayTouch(mine, corner + lower, partExtent), at + lower, best1 LIMIT(limit1));
 #endif
-                best[k] = u64vec2(max(best[k].x, key.x), max(best[k].y, key.y));
-                edge += t.down;
-                // Sums begin again every four rows, so that they round little.
-                if ((k & 3) == 3) {
-                    gain = t.depthDown * double(at.y + k + 1);
-                    zLeft = left + gain;
-                    zRight = right + gain;
-                } else {
-                    zLeft += t.depthDown;
-                    zRight += t.depthDown;
-                }
-            }
-        }
     }
-    [[unroll]] for (int k = 0; k < ROWS; ++k) store(origin + at + ivec2(0, k), size, best[k]);
+    [[unroll]] for (int k = 0; k < ROWS; ++k) store(origin + at + ivec2(0, k), size, best0[k]);
+#if PARTS == 2
+    [[unroll]] for (int k = 0; k < ROWS; ++k) store(origin + at + lower + ivec2(0, k), size, best1[k]);
+#endif
     if (lane == 0) atomicAdd(counters[COUNT_TILE_VISITED], uint64_t(end - begin));
 }
 

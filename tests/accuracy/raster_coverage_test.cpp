@@ -129,8 +129,8 @@ TEST(RasterCoverage, CoordinatesToTenMillionPixels) {
 }
 
 TEST(RasterCoverage, ImagesOfOnePixelOneRowAndOddSizes) {
-    const std::array<std::uint32_t, 2> sizes[] = {{1, 1},   {1, 700}, {700, 1}, {17, 33},
-                                                  {15, 16}, {255, 2}, {65, 129}};
+    const std::array<std::uint32_t, 2> sizes[] = {{1, 1},   {1, 700},  {700, 1}, {17, 33}, {15, 16},
+                                                  {255, 2}, {65, 129}, {66, 37}, {20, 21}};
     for (const auto& [width, height] : sizes) {
         const Mismatch m = compareImages(width, height, 3, 60, 7, [&](Random& random, std::uint32_t id) {
             const double size = std::pow(10.0, random.uniform(-0.5, 3.0));
@@ -267,7 +267,7 @@ TEST(RasterOrder, AnyOrderGivesTheSameBits) {
     }
     RasterRunner whole(kWidth, kHeight, std::uint32_t(list.size()));
     RasterRunner pieces(kWidth, kHeight, std::uint32_t(list.size()),
-                        {.batch = 700, .entries = 1, .stripRows = 4});
+                        {.batch = 700, .entries = 1, .tileLanes = 32});
     const RasterResult first = whole.run(view, list);
     EXPECT_EQ(compare(first, view, list, 4e-7).different, 0u);
     EXPECT_EQ(pieces.run(view, list).keys, first.keys) << "batches, coarse lists, short strips";

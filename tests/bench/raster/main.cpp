@@ -87,9 +87,16 @@ void measure(Device& device, const BenchScene& scene, int rounds, bool details) 
                scene.triangles.size() / 3, g * 1e3, c * 1e3, g / c,
                std::ranges::min(graphicsTimes) / std::ranges::min(computeTimes),
                median(graphicsCpu) / median(computeCpu), 100.0 * double(different) / double(ids.size()));
-    if (details)
+    if (details) {
         for (const PassTiming& pass : compute.plan.timings(compute.last))
             if (pass.milliseconds > 0.02) fmt::print("    {:24} {:8.3f}\n", pass.name, pass.milliseconds);
+        const RasterCounters work = compute.work.wait(compute.last).at(0);
+        fmt::print(
+            "    outside {}, empty {}, drawn directly {} ({} pixels of {} tested), by tiles {} ({} "
+            "entries, {} tested), clipped {}\n",
+            work.outside, work.empty, work.small, work.smallCovered, work.smallVisited, work.large,
+            work.entries, work.tileVisited, work.clipped);
+    }
     std::fflush(stdout);
 }
 

@@ -1,5 +1,6 @@
-// The tile kernel with 16 invocations a tile, of eight rows each, and four tiles a workgroup: workgroups cost a lock on
-// some CPU drivers.
+// The tile kernel with 8 invocations a tile, for subgroups of at most so many: set-ups then serve the whole tile, and four
+// keys are written at a time, since some CPU drivers write invocation by invocation. Four tiles a workgroup: workgroups
+// cost a lock.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -9,6 +10,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_ballot : require
-#define ROWS 8
+#define ROWS 4
+#define COLUMNS 4
+#define PARTS 2
 #define TILES 4
 #include "passes/raster/tile.glsl"
