@@ -142,16 +142,21 @@ std::shared_ptr<const ComputePipeline> PipelineCache::create(const ComputePipeli
                                          .pSetLayouts = &setLayout,
                                          .pushConstantRangeCount = info.pushConstantBytes > 0 ? 1u : 0u,
                                          .pPushConstantRanges = &push});
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> values;
+        for (const auto& [id, value] : info.spec) values.emplace_back(id, bits(value));
+        const std::vector<std::uint32_t> specialized =
+            info.specialize ? info.specialize(info.spirv, values) : std::vector<std::uint32_t>{};
+        if (!specialized.empty()) values.clear();  // they are in the words
+        const std::span<const std::uint32_t> spirv = specialized.empty() ? info.spirv : specialized;
         const vk::raii::ShaderModule module(
-            device_,
-            vk::ShaderModuleCreateInfo{.codeSize = info.spirv.size_bytes(), .pCode = info.spirv.data()});
+            device_, vk::ShaderModuleCreateInfo{.codeSize = spirv.size_bytes(), .pCode = spirv.data()});
         setName(device_, *module, info.name);
 
         std::vector<std::uint32_t> words;
         std::vector<vk::SpecializationMapEntry> entries;
-        for (const auto& [id, value] : info.spec) {
+        for (const auto& [id, value] : values) {
             entries.push_back({.constantID = id, .offset = std::uint32_t(words.size() * 4), .size = 4});
-            words.push_back(bits(value));
+            words.push_back(value);
         }
         const vk::SpecializationInfo specialization{.mapEntryCount = std::uint32_t(entries.size()),
                                                     .pMapEntries = entries.data(),

@@ -34,6 +34,11 @@ struct ComputePipelineInfo {
     std::uint32_t pushConstantBytes = 0;
     std::vector<std::pair<std::uint32_t, SpecValue>> spec = {};  ///< constant_id and value
     std::uint32_t subgroupSize = 0;                              ///< required size, 0 for the device's choice
+    /** Writes the constants into the words and leaves out what they rule out, where the pipeline is not there
+     * yet; nothing: the driver does. Not part of its identity. */
+    std::vector<std::uint32_t> (*specialize)(
+        std::span<const std::uint32_t> spirv,
+        std::span<const std::pair<std::uint32_t, std::uint32_t>> constants) = nullptr;
 };
 
 struct ComputePipeline {

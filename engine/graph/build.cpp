@@ -3,6 +3,7 @@
 #include "engine/graph/compile.hpp"
 #include "engine/graph/interface.hpp"
 #include "engine/graph/plan_impl.hpp"
+#include "engine/shader/spirv_trimmer.hpp"
 
 #include <fmt/format.h>
 
@@ -236,6 +237,7 @@ private:
                                       .bindings = {},
                                       .pushConstantBytes = pass.pushBytes,
                                       .spec = interface.spec};
+        if (info.spirv.size_bytes() >= kWorthSpecializing) info.specialize = specializedSpirv;
         std::vector<gpu::DescriptorWrite> writes;
         for (const BoundResource& bound : interface.bindings) {
             info.bindings.push_back(

@@ -1,5 +1,7 @@
 #include "engine/shader/kernel_cache.hpp"
+#include "engine/shader/reflection.hpp"
 #include "engine/shader/spirv_trimmer.hpp"
+#include "engine/shader/spirv_validator.hpp"
 
 #include <heliograph/error.hpp>
 #include <heliograph/kernel.hpp>
@@ -8,6 +10,7 @@
 #include <heliograph_kernels/shader.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <thread>
 #include <vector>
@@ -80,6 +83,40 @@ TEST(Variant, LosesWhatItsConstantsRuleOut) {
     // The function is there, called or not, until what nothing calls is taken out.
     EXPECT_LT(trimmed(without).size(), without.spirv.size() * 3 / 4);
     EXPECT_GT(trimmed(with).size(), trimmed(without).size() * 3 / 2);
+}
+
+TEST(Compile, SpecializedKernelsHaveTheirConstantsWrittenIn) {
+    const Kernel kernel = compileKernel("special",
+                                        header +
+                                            "layout(constant_id = 3) const bool WITH = true;\n"
+                                            "layout(constant_id = 7) const int TURNS = 2;\n"
+                                            "layout(constant_id = 9) const float SCALE = 0.5;\n"
+                                            "layout(local_size_x = 1) in;\n"
+                                            "layout(std430, binding = 0) buffer Values { float values[]; };\n"
+                                            "float heavy(float x) {\n"
+                                            "    for (int i = 0; i < TURNS; ++i) x = sin(x) + cos(2.0 * x);\n"
+                                            "    return x;\n"
+                                            "}\n"
+                                            "void main() {\n"
+                                            "    if (WITH) values[1] = heavy(values[0]);\n"
+                                            "    values[2] = SCALE * float(2 * TURNS);\n"
+                                            "}\n",
+                                        {});
+    const std::uint32_t threeQuarters = std::bit_cast<std::uint32_t>(0.75f);
+    const std::pair<std::uint32_t, std::uint32_t> all[] = {{3, 0}, {7, 5}, {9, threeQuarters}};
+    const std::vector<std::uint32_t> words = specializedSpirv(kernel.spirv, all);
+    ASSERT_FALSE(words.empty());
+    EXPECT_EQ(spirvFault(words), "");
+    const KernelReflection reflection = reflectSpirv("special", words);
+    EXPECT_TRUE(reflection.specConstants.empty());
+    EXPECT_EQ(reflection.bindings.size(), reflect(kernel).bindings.size());
+    EXPECT_LT(words.size(), kernel.spirv.size() * 3 / 4);  // without what nothing calls now
+    // What is stored is 0.75 * 10, folded.
+    const std::uint32_t folded = std::bit_cast<std::uint32_t>(7.5f);
+    EXPECT_NE(std::find(words.begin(), words.end(), folded), words.end());
+    // Constants that are not named keep their defaults; those named again come from the disk, the same.
+    EXPECT_GT(specializedSpirv(kernel.spirv, {}).size(), words.size());
+    EXPECT_EQ(specializedSpirv(kernel.spirv, all), words);
 }
 
 TEST(Compile, ErrorsNameFileAndLine) {
