@@ -90,10 +90,14 @@ void RasterPasses::drawAll() {
     const bool gathers =
         options_.gather.value_or(triangles_.count > std::uint64_t(view_->width) * view_->height);
     const Kernel& kernel = gathers ? shaders::rasterSetupTiny : shaders::rasterSetup;
+    // Where triangles are few for the pixels, most are large.
+    ComputeOptions options = projection();
+    if (!gathers && isNarrow())
+        options.spec["LEAVES_FEW"] = triangles_.count * 32ull < std::uint64_t(view_->width) * view_->height;
     for (std::uint32_t first = 0; first < triangles_.count; first += batch_) {
         const std::uint32_t count = std::min(batch_, triangles_.count - first);
         drawBatch(first == 0, {}, [&] {
-            setUp(kernel, projection()).record([push = pushOf(), first, count](Commands& c) {
+            setUp(kernel, options).record([push = pushOf(), first, count](Commands& c) {
                 c.push(push(first, count)).dispatch((count + kSetupTriangles - 1) / kSetupTriangles);
             });
         });

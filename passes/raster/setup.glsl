@@ -9,6 +9,7 @@
 
 /// Few where subgroups are narrow: what a subgroup does once, loading the view above all, then serves more triangles.
 layout(constant_id = 127) const uint LANES = 64u;
+layout(constant_id = 121) const bool LEAVES_FEW = false;  ///< small triangles may be left to the tiles
 layout(local_size_x = 64, local_size_x_id = 127) in;
 layout(set = 0, binding = 1, std430) buffer uVisibility { uint64_t visibility[]; };
 layout(set = 0, binding = 2, std430) buffer uState { RasterState state; };
@@ -79,6 +80,21 @@ struct Pending {
     uint id;
 };
 
+#ifndef GATHER
+/// Whether an invocation's pixels are left to the tiles: drawn one by one they would keep seven neighbours waiting of which
+/// too few have any. Where that leaves no small triangle, tiles need not read what they write over.
+bool isLeft(uint pixels) {
+    uint drawing = uint(pixels != 0u), most = pixels;
+    drawing += subgroupShuffleXor(drawing, 1u);
+    most = max(most, subgroupShuffleXor(most, 1u));
+    drawing += subgroupShuffleXor(drawing, 2u);
+    most = max(most, subgroupShuffleXor(most, 2u));
+    drawing += subgroupShuffleXor(drawing, 4u);
+    most = max(most, subgroupShuffleXor(most, 4u));
+    return gl_SubgroupSize == 8u && pixels != 0u && most >= 8u * drawing;
+}
+#endif
+
 /// Sets up the triangle of turn k: its pixels where it is small, else none.
 Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
     bool valid;
@@ -119,7 +135,6 @@ Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
     work.tiledBits |= uint(tiled) << k;
 
     valid = valid && small;
-    work.small += uint(valid);
     if (area < 0) {
         ivec2 swap = q;
         q = r;
@@ -155,7 +170,18 @@ Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
         e += 2 * down;
     }
     uvec2 mask = unpackUint2x32(coverage);
-    work.covered += uint(bitCount(mask.x) + bitCount(mask.y));
+    uint pixels = uint(bitCount(mask.x) + bitCount(mask.y));
+#ifndef GATHER
+    if (LEAVES_FEW) {
+        bool left = isLeft(pixels);
+        work.tiledBits |= uint(left) << k;
+        valid = valid && !left;
+        mask = left ? uvec2(0u) : mask;
+        pixels = left ? 0u : pixels;
+    }
+#endif
+    work.small += uint(valid);
+    work.covered += pixels;
     return Pending(mask, uint(max(bounds.x, 0)) | uint(max(bounds.y, 0)) << 16, unpackDouble2x32(plane.a),
                    unpackDouble2x32(plane.b), unpackDouble2x32(plane.c), low, high, id);
 }
