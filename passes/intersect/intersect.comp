@@ -37,17 +37,20 @@ layout(set = 0, binding = 3, std430) buffer Counters {
 layout(constant_id = 0) const bool ANY = false;    ///< any hit within the limit will do
 /** Lanes that wait before they are given rays; 0 takes a quarter of them. */
 layout(constant_id = 1) const uint PATIENCE = 0u;
+/** The device's, a power of two. lavapipe unrolls loops over constants only, and one left takes a tenth of a turn. */
+layout(constant_id = 2) const uint SUBGROUP_SIZE = 8u;
 
 /** Sum over the subgroup. Shuffles, since lavapipe's reductions are loops over lanes. All lanes are active. */
 uint sumOfLanes(uint value) {
-    [[unroll]] for (uint d = 1u; d < gl_SubgroupSize; d <<= 1) value += subgroupShuffleXor(value, d);
+    [[unroll]] for (int i = 0; i < findMSB(SUBGROUP_SIZE); ++i) value += subgroupShuffleXor(value, 1u << i);
     return value;
 }
 
 /** Sum over the lanes before this one. */
 uint sumBefore(uint value) {
     uint sum = value;
-    [[unroll]] for (uint d = 1u; d < gl_SubgroupSize; d <<= 1) {
+    [[unroll]] for (int i = 0; i < findMSB(SUBGROUP_SIZE); ++i) {
+        const uint d = 1u << i;
         const uint left = subgroupShuffle(sum, gl_SubgroupInvocationID - min(d, gl_SubgroupInvocationID));
         sum += gl_SubgroupInvocationID >= d ? left : 0u;
     }
@@ -66,7 +69,7 @@ void main() {
     uint index = ~0u;
     uint spent = 0u, abandoned = 0u;
     // Uniform over the subgroup: all lanes stay active, so that all can be counted.
-    uint waiting = gl_SubgroupSize;
+    uint waiting = SUBGROUP_SIZE;
     bool working = true;
     while (working) {
         const bool idle = !isBusy(t);
@@ -84,14 +87,14 @@ void main() {
             t = beginTraversal(uintBitsToFloat(from.xyz), uintBitsToFloat(towards.xyz), int(towards.w), ivec2(1, 0),
                                uintBitsToFloat(from.w));
         }
-        const uint patience = open && next < end ? (PATIENCE > 0u ? PATIENCE : gl_SubgroupSize / 4u) : gl_SubgroupSize;
+        const uint patience = open && next < end ? (PATIENCE > 0u ? PATIENCE : SUBGROUP_SIZE / 4u) : SUBGROUP_SIZE;
         do {
             takeTurn(t, ANY);
             ++spent;
             waiting = sumOfLanes(isBusy(t) ? 0u : 1u);
         } while (waiting < patience);
         ++spent;
-        working = waiting < gl_SubgroupSize || (open && next < end) || sumOfLanes(index != ~0u ? 1u : 0u) > 0u;
+        working = waiting < SUBGROUP_SIZE || (open && next < end) || sumOfLanes(index != ~0u ? 1u : 0u) > 0u;
     }
     if (subgroupElect()) {
         uCursors.taken[place] = next;

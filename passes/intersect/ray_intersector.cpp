@@ -44,6 +44,7 @@ RayIntersector::RayIntersector(Device& device, const PackedScene& packed, RayQue
     const Buffer counters = graph.import(counters_);
     SpecConstants spec = {{"ANY", question == RayQuestion::Any},
                           {"STACK_SIZE", std::int32_t(packed.treeDepth + 1)}};
+    if (packed.accelerator == AcceleratorKind::Bvh) spec["SUBGROUP_SIZE"] = device.info().subgroupSize;
     const TreeAccess reading = access.value_or(keptTreeAccess(device));
     if (packed.accelerator == AcceleratorKind::Bvh) spec.merge(accessConstants(reading));
     if (packed.splitTree) spec["SPLIT_TREE"] = true;

@@ -11,8 +11,9 @@
  * and o = fl(fl(p - origin) * inv); each product and sum errs by at most 5u of |q a| + |o| in all, q <= 255.
  * Far planes get 6u (255 |a| + |o|) more and near planes less.
  *
- * Distances are compared as integers (IEEE order of non-negative floats; a negative far plane stays negative,
- * which misses), since the float minimum takes three instructions where NaN must be looked after.
+ * Distances are compared as integers (IEEE order of non-negative floats), since the float minimum takes three
+ * instructions where NaN must be looked after. Negative floats come before all others and in the reverse order: where a
+ * far plane lies behind the ray, its near plane lies farther behind and is the greater integer, so that the box is missed.
  *
  * With INSTANCES, some places of the tree's leaves stand for placed meshes (shaders/scene/placed.glsl), whose trees hold
  * boxes in the mesh's own space. A ray that comes to one goes on in that space: its other candidates wait aside, and the
@@ -229,7 +230,7 @@ void visitNode(inout Traversal t) {
         const vec3 leave = vec3(scaledByte(farX[word], byte), scaledByte(farY[word], byte),
                                 scaledByte(farZ[word], byte)) * scale + farOffset;
         const ivec3 e = floatBitsToInt(enter), l = floatBitsToInt(leave);
-        const bool hit = max(max(e.x, e.y), max(e.z, 0)) <= min(min(l.x, l.y), min(l.z, limit));
+        const bool hit = max(max(e.x, e.y), e.z) <= min(min(l.x, l.y), min(l.z, limit));
         hits |= hit ? (1u << s) | (7u << (8 + 3 * s)) : 0u;
     }
     hits &= child.z;
