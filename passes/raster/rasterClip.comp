@@ -1,5 +1,5 @@
 // Clips the triangles that cross the near plane or the guard band, in homogeneous pixels and in double, and makes
-// records of the parts, with their entries counted per cell.
+// records of the parts, with their entries counted and put in slots.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -15,6 +15,7 @@ layout(set = 0, binding = 2, std430) readonly buffer uClipped { uint clipped[]; 
 layout(set = 0, binding = 3, std430) writeonly buffer uRecords { uvec4 records[]; };
 layout(set = 0, binding = 4, std430) buffer uCounts { uint counts[]; };
 layout(set = 0, binding = 5, std430) buffer uCounters { uint64_t counters[]; };
+layout(set = 0, binding = 6, std430) writeonly buffer uEntries { uint entries[]; };
 
 // Sutherland and Hodgman's algorithm on corners (X, Y, w, distance to the near plane).
 const int CORNERS = 8;
@@ -72,11 +73,14 @@ void main() {
         ivec2 next = snap(corner.x, corner.y, corner.z);
         Record record = makeRecord(first, previous, next, plane, uint(source.g), size);
         record.used = record.used && k + 2 < corners;
-        uint at = (state.largeCount + index * CLIP_PARTS + uint(k)) * uint(RECORD_TEXELS);
+        uint place = state.largeCount + index * CLIP_PARTS + uint(k), at = place * uint(RECORD_TEXELS);
         packRecord(record, records[at], records[at + 1u], records[at + 2u], records[at + 3u]);
         CellWalk walk = beginWalk(record, size, state.maxCells);
         for (; walk.left > 0; advance(walk))
-            if (touches(walk)) atomicAdd(counts[cellIndex(walk)], 1u);
+            if (touches(walk)) {
+                uint slot = atomicAdd(counts[cellIndex(walk)], 1u);
+                if (slot < walk.slots) entries[slotPlace(walk) + slot] = place;
+            }
         parts += uint(record.used);
         previous = next;
     }

@@ -1,4 +1,4 @@
-// Writes the entries that were counted into the cells' lists; counts go down to 0 again.
+// Writes the entries of cells that have more than slots; their counts go down to 0 again.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -19,11 +19,14 @@ void main() {
     int at = int(index) * RECORD_TEXELS;
     Record record = unpackRecord(texelFetch(uRecords, at), texelFetch(uRecords, at + 1), texelFetch(uRecords, at + 2),
                                  texelFetch(uRecords, at + 3));
-    CellWalk walk = beginWalk(record, imageSizePixels(), state.maxCells);
+    ivec2 size = imageSizePixels();
+    CellWalk walk = beginWalk(record, size, state.maxCells);
+    uint slots = slotStart(size, LEVELS);
     for (; walk.left > 0; advance(walk)) {
         if (touches(walk)) {
             int cell = cellIndex(walk);
-            entries[starts[cell].x + atomicAdd(counts[cell], 0xffffffffu) - 1u] = index;
+            uint start = starts[cell].x;
+            if (start >= slots) entries[start + atomicAdd(counts[cell], 0xffffffffu) - 1u] = index;
         }
     }
 }

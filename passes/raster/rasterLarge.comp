@@ -1,4 +1,4 @@
-// Records of the listed triangles that need no clipping, with their entries counted per cell.
+// Records of the listed triangles that need no clipping, with their entries counted and put in slots.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -12,6 +12,7 @@ layout(set = 0, binding = 1, std430) readonly buffer uState { RasterState state;
 layout(set = 0, binding = 2, std430) readonly buffer uLarge { uint large[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer uRecords { uvec4 records[]; };
 layout(set = 0, binding = 4, std430) buffer uCounts { uint counts[]; };
+layout(set = 0, binding = 5, std430) writeonly buffer uEntries { uint entries[]; };
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -26,5 +27,8 @@ void main() {
     packRecord(record, records[at], records[at + 1u], records[at + 2u], records[at + 3u]);
     CellWalk walk = beginWalk(record, size, state.maxCells);
     for (; walk.left > 0; advance(walk))
-        if (touches(walk)) atomicAdd(counts[cellIndex(walk)], 1u);
+        if (touches(walk)) {
+            uint slot = atomicAdd(counts[cellIndex(walk)], 1u);
+            if (slot < walk.slots) entries[slotPlace(walk) + slot] = index;
+        }
 }

@@ -16,8 +16,6 @@ void main() {
     state.maxCells = min(push.capacity / max(records, 1u), 64u);
     state.largeGroups[0] = groups(state.largeCount);
     state.clipGroups[0] = groups(state.clippedCount);
-    state.fillGroups[0] = groups(records);
     state.largeGroups[1] = state.largeGroups[2] = 1u;
     state.clipGroups[1] = state.clipGroups[2] = 1u;
-    state.fillGroups[1] = state.fillGroups[2] = 1u;
 }

@@ -25,6 +25,19 @@ std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
     return cells;
 }
 
+/** As slotsOf() in shaders/raster/bin.glsl, of all cells. */
+std::uint64_t slotCount(std::uint32_t width, std::uint32_t height) {
+    constexpr std::uint64_t tileSlots = 128, mostSlots = 2048, slotTiles = 32768;
+    std::uint64_t slots = 0;
+    for (int level = 0; level < kCellLevels; ++level) {
+        const std::uint64_t side = 16ull << (2 * level);
+        const std::uint64_t cells = ((width + side - 1) / side) * ((height + side - 1) / side);
+        if (level == 0 && cells > slotTiles) return 0;
+        slots += cells * std::min(tileSlots << (4 * level), mostSlots);
+    }
+    return slots;
+}
+
 }  // namespace
 
 RasterPasses::RasterPasses(Graph& graph, const RasterTriangles& triangles,
@@ -41,9 +54,11 @@ RasterPasses::RasterPasses(Graph& graph, const RasterTriangles& triangles,
     if (target.clusters) batch_ = std::max(batch_ / kSetupTriangles, 1u) * kSetupTriangles;
     const std::uint32_t width = view_->width, height = view_->height;
     const std::uint64_t cells = cellCount(width, height);
+    const std::uint64_t slots = slotCount(width, height);
     const std::uint64_t records = std::uint64_t(batch_) * kClipParts;
     // No record may need more entries than there are cells; and each must find room for at least one.
-    entries_ = std::max(records, std::min({records * cells, options.entries, maxStorageBufferRange / 4}));
+    entries_ =
+        std::max(records, std::min({records * cells, options.entries, maxStorageBufferRange / 4 - slots}));
     if (target.limit) limit_ = {{"uLimit", *target.limit, Format::RG32UI}};
 
     state_ = graph.buffer("raster.state", {kStateBytes});
@@ -53,7 +68,7 @@ RasterPasses::RasterPasses(Graph& graph, const RasterTriangles& triangles,
     counts_ = graph.buffer("raster.counts", {cells * 4});
     starts_ = graph.buffer("raster.starts", {cells * 8});
     tiles_ = graph.buffer("raster.tiles", {std::uint64_t((width + 15) / 16) * ((height + 15) / 16) * 4});
-    entry_ = graph.buffer("raster.entries", {entries_ * 4});
+    entry_ = graph.buffer("raster.entries", {(slots + entries_) * 4});
     graph.fill("raster.clearCounts", counts_, 0);
 }
 
@@ -130,14 +145,14 @@ void RasterPasses::listBatch(bool isFirst, std::optional<std::uint64_t> once) {
     if (once) plan.indirect(clusterState_);
     graph_.compute("raster.large", shaders::rasterLarge, projection())
         .reads({{"uTriangles", triangles_.buffer}, {"uState", state_}, {"uLarge", large_}})
-        .overwrites({{"uRecords", records_}})
+        .overwrites({{"uRecords", records_}, {"uEntries", entry_}})
         .modifies({{"uCounts", counts_}})
         .indirect(state_)
         .record(
             [push, state = state_](Commands& c) { c.push(push()).dispatchIndirect(state, kLargeGroups); });
     graph_.compute("raster.clip", shaders::rasterClip, projection())
         .reads({{"uTriangles", triangles_.buffer}, {"uState", state_}, {"uClipped", clipped_}})
-        .writes({{"uRecords", records_}})
+        .writes({{"uRecords", records_}, {"uEntries", entry_}})
         .modifies({{"uCounts", counts_}, {"uCounters", target_.counters}})
         .indirect(state_)
         .record([push, state = state_](Commands& c) { c.push(push()).dispatchIndirect(state, kClipGroups); });
@@ -145,9 +160,11 @@ void RasterPasses::listBatch(bool isFirst, std::optional<std::uint64_t> once) {
     grouped.spec["GROUP_TILES"] = isFourfold() ? kNarrowTiles : 1u;
     grouped.spec["MAY_START_FRESH"] = isPaired() && isFirst;
     Pass scan = graph_.compute("raster.scan", shaders::rasterScan, grouped)
-                    .reads({{"uCounts", counts_}})
                     .overwrites({{"uStarts", starts_}, {"uTiles", tiles_}})
-                    .modifies({{"uState", state_}, {"uCounters", target_.counters}})
+                    .modifies({{"uCounts", counts_},
+                               {"uCountTexels", counts_, Format::R32UI},
+                               {"uState", state_},
+                               {"uCounters", target_.counters}})
                     .record([push, dispatchOnce](Commands& c) {
                         c.push(push());
                         dispatchOnce(c);
@@ -156,7 +173,7 @@ void RasterPasses::listBatch(bool isFirst, std::optional<std::uint64_t> once) {
     graph_.compute("raster.fill", shaders::rasterFill)
         .reads({{"uRecords", records_}, {"uState", state_}, {"uStarts", starts_}})
         .modifies({{"uCounts", counts_}})
-        .overwrites({{"uEntries", entry_}})
+        .writes({{"uEntries", entry_}})
         .indirect(state_)
         .record([push, state = state_](Commands& c) { c.push(push()).dispatchIndirect(state, kFillGroups); });
 }

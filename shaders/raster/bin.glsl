@@ -1,5 +1,6 @@
-// Records of triangles for the tile kernel, and the walk over the cells that a record touches. The same walk counts
-// entries first and writes them later, so that a list can neither overflow nor lose a triangle.
+// Records of triangles for the tile kernel, and the walk over the cells that a record touches. Every cell has slots for
+// its first entries. The lists of cells that have more lie behind all slots: their entries are counted first and written
+// by a second walk, so that a list can neither overflow nor lose a triangle.
 #ifndef SHADERS_RASTER_BIN_GLSL
 #define SHADERS_RASTER_BIN_GLSL
 
@@ -74,6 +75,23 @@ int levelStart(ivec2 size, int level) {
     return start;
 }
 
+/// Slots of a cell: as many for a pixel at the next levels, up to a limit; none in images so large that they would be
+/// many. As slotCount() in raster_passes.cpp.
+uint slotsOf(ivec2 size, int level) {
+    ivec2 tiles = levelCells(size, 0);
+    return tiles.x * tiles.y <= SLOT_TILES ? min(TILE_SLOTS << (4 * level), MOST_SLOTS) : 0u;
+}
+
+/// Number of slots of all levels before this one; of all cells for LEVELS.
+uint slotStart(ivec2 size, int level) {
+    uint start = 0u;
+    for (int k = 0; k < LEVELS; ++k) {
+        ivec2 cells = levelCells(size, k);
+        start += k < level ? uint(cells.x * cells.y) * slotsOf(size, k) : 0u;
+    }
+    return start;
+}
+
 /// The walk over the cells that a record may touch, at the finest level where its bounds touch no more than
 /// `maxCells` of them. `cell` is valid while `left` is positive; advance() goes on.
 struct CellWalk {
@@ -81,6 +99,7 @@ struct CellWalk {
     ivec2 at;
     int left;
     int shift, first, stride;
+    uint slots, firstSlot;
     int64_t base[3];  // edges at pixel (0, 0), plus what the farthest inside pixel of a cell adds
     ivec2 slope[3];
 };
@@ -97,6 +116,8 @@ CellWalk beginWalk(Record record, ivec2 size, uint maxCells) {
     walk.shift = cellShift(level);
     walk.first = levelStart(size, level);
     walk.stride = levelCells(size, level).x;
+    walk.slots = slotsOf(size, level);
+    walk.firstSlot = slotStart(size, level);
     walk.range = bounds >> walk.shift;
     ivec2 cells = walk.range.zw - walk.range.xy + 1;
     walk.left = record.used ? cells.x * cells.y : 0;
@@ -124,6 +145,9 @@ bool touches(CellWalk walk) {
 }
 
 int cellIndex(CellWalk walk) { return walk.first + walk.at.y * walk.stride + walk.at.x; }
+
+/// Where the entries of the current cell begin that have slots.
+uint slotPlace(CellWalk walk) { return walk.firstSlot + uint(walk.at.y * walk.stride + walk.at.x) * walk.slots; }
 
 void advance(inout CellWalk walk) {
     --walk.left;

@@ -9,6 +9,10 @@
 const int TILE_SIZE = 16;
 const int LEVELS = 6;  // the last has one cell of 16384 pixels: the largest image
 
+// Slots that a tile's own list has, in images of at most SLOT_TILES tiles; and most of a cell.
+const uint TILE_SLOTS = 128u, MOST_SLOTS = 2048u;
+const int SLOT_TILES = 32768;
+
 // A tile's lists are read in segments, each by its own workgroup, so that no loop comes near the 65,535
 // iterations after which some drivers stop loops silently.
 const uint SEGMENT = 16384u;
@@ -20,7 +24,7 @@ struct RasterState {
     uint recordCount;   // largeCount + CLIP_PARTS clippedCount
     uint largeGroups[3];  // workgroups of the indirect dispatches
     uint clipGroups[3];
-    uint fillGroups[3];
+    uint fillGroups[3];  // none where every list fits its slots
     uint tileGroups[3];  // for the first segment of every tile with entries
     uint moreGroups[3];  // for the others, most often none
     uint tileCount;      // tiles with entries, each x | y << 16

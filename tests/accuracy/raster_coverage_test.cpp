@@ -314,6 +314,28 @@ TEST(RasterCapacity, ListsThatHoldOneEntryForATriangle) {
     }
 }
 
+TEST(RasterCapacity, ListsThatJustFillATilesSlotsOrNot) {
+    const RasterView view = pixelView(32, 16);
+    for (std::uint32_t count : {127u, 128u, 129u, 256u}) {
+        std::vector<RasterTriangle> list;
+        for (std::uint32_t i = 0; i < count; ++i) {  // each is seen at a pixel of the first tile
+            const double x = i % 16 + 0.2, y = i / 16 + 0.2;
+            list.push_back(
+                facing({glm::dvec2(x, y), glm::dvec2(33, y + 0.3), glm::dvec2(x, y + 0.6)}, 20 - x, i));
+        }
+        RasterRunner runner(32, 16, count, {}, {.poison = true});
+        for (int time = 0; time < 2; ++time) {
+            const RasterResult result = runner.run(view, list);
+            EXPECT_EQ(compare(result, view, list).different, 0u) << count;
+            EXPECT_EQ(result.counters.entries, 2 * count);
+        }
+        RasterRunner batches(32, 16, count, {.batch = 50}, {.poison = true});
+        const RasterResult result = batches.run(view, list);
+        EXPECT_EQ(compare(result, view, list).different, 0u) << count;
+        EXPECT_EQ(result.counters.entries, 2 * count) << "each batch's alone";
+    }
+}
+
 TEST(RasterCapacity, SmallTrianglesGatheredOrNot) {
     const RasterView view = pixelView(kWidth, kHeight);
     for (std::uint32_t count : {1u, 7u, 33u, 600u, 20000u}) {
