@@ -74,10 +74,12 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     r.goes = dot(s.face, r.direction) > 0.0;
     return r;
 }
-/** Values of a direction to a light, where one `asks`, and of the direction drawn. */
-SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
-                           inout SurfaceSample next) {
-    const float cosine = dot(s.shading, toLight);
-    return SurfaceValue(dot(s.face, toLight) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
+/** Values of directions to lights, where one `asks`, and of the direction drawn. */
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
+    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+        const float cosine = dot(s.shading, toLights[i]);
+        lit[i] = SurfaceValue(dot(s.face, toLights[i]) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
+    }
 }
 #endif

@@ -254,13 +254,14 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return SurfaceSample(chosen.direction, chosen.weight, chosen.density, !bsdf.unlit && chosen.density != 0.0);
 }
 
-SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
-                           inout SurfaceSample next) {
-    const FacetWalk walk = walkFacets(bsdf, bsdf.facets, bsdf.folds, bsdf.facetKey, toLight, asks, lightDensity,
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
+    // One walk judges one light: there is but one sample.
+    const FacetWalk walk = walkFacets(bsdf, bsdf.facets, bsdf.folds, bsdf.facetKey, toLights[0], asks, lightDensity,
                                       ScatterSample(next.direction, next.weight, next.density));
     const bool goes = next.goes && maxComponent(walk.weight) > 0.0;
     next = SurfaceSample(walk.direction, walk.weight, walk.density, goes);
-    return SurfaceValue(maxComponent(walk.lit) > 0.0 ? 1.0 : 0.0, walk.lit);
+    lit[0] = SurfaceValue(maxComponent(walk.lit) > 0.0 ? 1.0 : 0.0, walk.lit);
 }
 #else
 
@@ -278,29 +279,35 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return r;
 }
 
-/** Values of a direction to a light, where one `asks`, and of the direction drawn: each of the lobe there, and of what
+/** Values of directions to lights, where one `asks`, and of the direction drawn: each of the lobe there, and of what
  * is mirrored to it. One loop, not unrolled: the code of all materials is in the kernel once. */
-SurfaceValue surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLight, const bool asks, float lightDensity,
-                           inout SurfaceSample next) {
-    ScatterValue lit = noScattering(), drawn = noScattering();
-    const int ways = HAS_TILTED_LOBES ? 2 : 1;
-    [[dont_unroll]] for (int i = asks ? 0 : ways; i < 2 * ways; ++i) {
-        const bool isDrawn = i >= ways;
-        const vec3 wi = isDrawn ? next.direction : toLight;
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
+    ScatterValue drawn = noScattering();
+    ScatterValue values[LIGHT_SAMPLES];
+    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) values[i] = noScattering();
+    const int ways = HAS_TILTED_LOBES ? 2 : 1, last = LIGHT_SAMPLES * ways;
+    [[dont_unroll]] for (int i = asks ? 0 : last; i < last + ways; ++i) {
+        const bool isDrawn = i >= last;
+        vec3 wi = next.direction;
+        [[unroll]] for (int j = 0; j < LIGHT_SAMPLES; ++j) wi = i >= j * ways && i < (j + 1) * ways ? toLights[j] : wi;
         const float height = dot(s.face, wi);
         const bool above = height > 0.0, mirrors = HAS_TILTED_LOBES && (i & 1) == 1;
         const vec3 local = (wi - (mirrors ? 2.0 * height : 0.0) * s.face) * bsdf.frame;
         const bool counts = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
         const ScatterValue v = localValue(bsdf, local);
         if (counts && isDrawn) drawn = ScatterValue(drawn.value + v.value, drawn.density + v.density);
-        if (counts && !isDrawn) lit = ScatterValue(lit.value + v.value, lit.density + v.density);
+        [[unroll]] for (int j = 0; j < LIGHT_SAMPLES; ++j)
+            if (counts && i >= j * ways && i < (j + 1) * ways)
+                values[j] = ScatterValue(values[j].value + v.value, values[j].density + v.density);
     }
     if (next.density >= 0.0) {
         next.density = drawn.density;
         next.weight = drawn.density > 0.0 ? drawn.value / drawn.density : vec3(0.0);
     }
     next.goes = next.goes && max(max(next.weight.x, next.weight.y), next.weight.z) > 0.0;
-    return SurfaceValue(lit.density, lit.density > 0.0 ? lit.value / lit.density : vec3(0.0));
+    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i)
+        lit[i] = SurfaceValue(values[i].density, values[i].density > 0.0 ? values[i].value / values[i].density : vec3(0.0));
 }
 #endif
 #endif

@@ -76,12 +76,12 @@ float largestOf(vec3 v) {
 }
 
 /**
- * Takes the path through the surface that its ray met: adds emission, gives a shadow ray to be asked (its
- * radiance to be added if the way is free), and the next ray. Returns whether the path goes on; `cut` is set
+ * Takes the path through the surface that its ray met: adds emission, gives shadow rays to be asked (the
+ * radiance of each to be added if its way is free), and the next ray. Returns whether the path goes on; `cut` is set
  * where it ends only because of maxDepth. Where nothing was met (`slot` < 0), nothing is added or asked.
  */
-bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth, out ShadowRay shadow,
-             out bool cut) {
+bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth,
+             out ShadowRay shadows[LIGHT_SAMPLES], out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, path.source, max(slot, 0));
     if (hit) path.throughput *= throughMedium(s, path.direction, path.source, distance);
@@ -144,14 +144,26 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         next.density = turn.x * INV_PI;  // by which its worth is found
         next.goes = dot(s.face, next.direction) > 0.0;
     }
-    LightSample light;
-    light.direction = s.face;
-    light.density = 0.0;
+    LightSample lights[LIGHT_SAMPLES];
+    vec3 toLights[LIGHT_SAMPLES];
+    SurfaceValue scattered[LIGHT_SAMPLES];
+    const bool asksSeveral = LIGHT_SAMPLES > 1 && path.depth == 0u;
     if (LIGHT_COUNT > 0) {
         path.lightPlace = lightPlace(s.position, lightSide(bsdf, s));
-        light = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
+#if LIGHT_SAMPLES == 1
+        lights[0] = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
+#else
+        [[dont_unroll]] for (uint i = 0u; i < (asksSeveral ? uint(LIGHT_SAMPLES) : 1u); ++i) {
+            PixelSampler of = numbers;
+            if (asksSeveral) of = splitSample(SAMPLER_KIND, numbers, LIGHT_SAMPLES, i);
+            [[unroll]] for (int j = LIGHT_SAMPLES - 1; j > 0; --j) lights[j] = lights[j - 1];
+            lights[0] = sampleLight(s.position, path.lightPlace, sampleBits2D(SAMPLER_KIND, of, dimension + 2u).x,
+                                    sampleBits2D(SAMPLER_KIND, of, dimension));
+        }
+#endif
     }
-    const SurfaceValue scattered = surfaceValues(bsdf, s, light.direction, LIGHT_COUNT > 0, WHITTED ? 0.0 : light.density, next);
+    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) toLights[i] = LIGHT_COUNT > 0 ? lights[i].direction : s.face;
+    surfaceValues(bsdf, s, toLights, LIGHT_COUNT > 0, WHITTED || LIGHT_COUNT == 0 ? 0.0 : lights[0].density, next, scattered);
 #ifdef GUIDED
     // What is drawn from both is worth its value over both densities. Against light sampling it is weighed by the
     // surface's own density alone: weights that sum to 1 need not be those of the densities drawn by.
@@ -160,17 +172,21 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     if (next.density > 0.0) next.weight *= next.density / mix(next.density, fromTable, guide.share);
 #endif
 
-    shadow = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
-    if (LIGHT_COUNT > 0) {
-        // Without rays that could meet the light there is nothing to weigh against.
-        const bool weighs = light.density > 0.0 && !WHITTED && !WEIGHS_LIGHT;
-        const float weight = weighs ? light.density / (light.density + scattered.density) : 1.0;
-        shadow.origin = leaving(s, light.direction);
-        shadow.radiance = path.throughput * scattered.weight * light.radiance * (scattered.density * weight);
-        shadow.target = light.triangles;
-        shadow.direction = light.infinite ? light.direction : light.target - shadow.origin;
-        const bool asks = alive && scattered.density > 0.0 && largestOf(light.radiance) > 0.0;
-        shadow.limit = asks ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
+    const float several = asksSeveral ? float(LIGHT_SAMPLES) : 1.0;
+    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+        shadows[i] = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
+        if (LIGHT_COUNT > 0) {
+            const LightSample light = lights[i];
+            // Without rays that could meet the light there is nothing to weigh against.
+            const bool weighs = light.density > 0.0 && !WHITTED && !WEIGHS_LIGHT;
+            const float weight = weighs ? light.density / (several * light.density + scattered[i].density) : 1.0 / several;
+            shadows[i].origin = leaving(s, light.direction);
+            shadows[i].radiance = path.throughput * scattered[i].weight * light.radiance * (scattered[i].density * weight);
+            shadows[i].target = light.triangles;
+            shadows[i].direction = light.infinite ? light.direction : light.target - shadows[i].origin;
+            const bool asks = alive && scattered[i].density > 0.0 && largestOf(light.radiance) > 0.0;
+            shadows[i].limit = asks && (i == 0 || asksSeveral) ? (light.infinite ? INFINITE_DISTANCE : 1.0) : 0.0;
+        }
     }
 
     if (HEMISPHERE) {
@@ -179,7 +195,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     }
     if (WHITTED) next.goes = next.goes && next.density < 0.0;
     path.direction = next.direction;
-    path.density = next.density;
+    path.density = LIGHT_SAMPLES > 1 ? next.density / several : next.density;  // weighed against all of the samples
     path.throughput *= next.weight;
     path.origin = leaving(s, next.direction);
     path.source = slot;

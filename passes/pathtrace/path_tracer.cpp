@@ -46,6 +46,10 @@ constexpr std::array<std::uint32_t, 2> kStateRows = {2, 3};
 /** Loop turns of a dispatch of the megakernel for which the wavefront makes one round. */
 constexpr std::uint32_t kTurnsOfRound = 1000;
 
+/** PathTraceOptions::turnBudget at most where several lights are asked: a turn of the kernel's loop may take
+ * 8000 turns of others for each ray, and a dispatch has 65,535. */
+constexpr std::uint32_t kTurnsBesideLights = 24000;
+
 /** Workgroups of 8 x 8 pixels in rows that a dispatch may have. */
 std::array<std::uint32_t, 2> groupsFor(const std::array<std::uint32_t, 2>& size) {
     const std::uint64_t tiles = std::uint64_t((size[0] + 7) / 8) * ((size[1] + 7) / 8);
@@ -89,9 +93,20 @@ struct PathTracer::Impl {
         if (unrolled_ || !scene_.info().writtenOut.empty()) generated_ = unrolledScene(scene_.info());
         if (options_.scheduler == Scheduler::Wavefront) {
             assert(options_.kernel == nullptr);
-            wavefront_.emplace(device, options_.size);
+            wavefront_.emplace(device, options_.size, lightSamples());
         }
         declareTrace(film);
+    }
+
+    /** LIGHT_SAMPLES of the kernels. */
+    std::uint32_t lightSamples() const {
+        assert(options_.lightSamples >= 1 && options_.lightSamples <= kMostLightSamples);
+        const PackedScene& info = scene_.info();
+        const bool folds = !materialDefines_.contains("TILTED_FACETS");  // walks judge one
+        // Comparators may test every triangle for each ray, and a dispatch has only so many turns.
+        const bool quick = info.accelerator == AcceleratorKind::Bvh || info.triangleCount <= 2000;
+        const bool draws = options_.nextEventEstimation && !options_.meter && !options_.photons;
+        return folds && quick && draws ? options_.lightSamples : 1;
     }
 
     SpecConstants constants() const {
@@ -184,6 +199,7 @@ struct PathTracer::Impl {
             spec.merge(bounces_->constants());
             bounces.push_back({"uBounces", bounces_->import(graph)});
         }
+        if (lightSamples() > 1) defines["LIGHT_SAMPLES"] = std::to_string(lightSamples());
         if (options_.meter) defines["METER"] = "1";
         std::vector<Binding> points;
         if (!options_.meterPoints.empty()) {
@@ -260,15 +276,16 @@ struct PathTracer::Impl {
         assert(sampleEnd < (1u << 24));
         const std::uint32_t open = 0;
         counters_.upload(&open, sizeof open);
-        parameters_ = {frame_,
-                       glm::vec4(scene_.info().environment, 0.0f),
-                       options_.size,
-                       sampleEnd,
-                       options_.seed,
-                       std::min(options_.maxDepth, kUnlimitedDepth),
-                       options_.maxDepth >= kUnlimitedDepth ? 1u : 0u,
-                       options_.turnBudget,
-                       begun_ ? 0u : 1u};
+        parameters_ = {
+            frame_,
+            glm::vec4(scene_.info().environment, 0.0f),
+            options_.size,
+            sampleEnd,
+            options_.seed,
+            std::min(options_.maxDepth, kUnlimitedDepth),
+            options_.maxDepth >= kUnlimitedDepth ? 1u : 0u,
+            lightSamples() > 1 ? std::min(options_.turnBudget, kTurnsBesideLights) : options_.turnBudget,
+            begun_ ? 0u : 1u};
         // What a meter receives counts as the first scattering.
         if (options_.meter && frame_.forward.w > 0.5f)
             parameters_.maxDepth = std::min(parameters_.maxDepth + 1, kUnlimitedDepth);

@@ -45,6 +45,9 @@ struct PathTraceOptions {
     bool whitted = false;                         ///< paths go on from mirrors and smooth refraction only
     bool hemisphere = false;                      ///< directions are uniform over the hemisphere
     double roulette = 3, survival = 0;            ///< see RenderOptions
+    /** Directions to lights that are asked where the camera's ray arrives, at most 4; one where meters,
+     * facets that are followed or comparators over many triangles are asked for. */
+    std::uint32_t lightSamples = 1;
     NormalMapping normalMapping = NormalMapping::Folded;  ///< Facets: not with `hemisphere`
     SamplerKind sampler = SamplerKind::Sobol;
     std::uint32_t samples = 64;  ///< per pixel, to come: Stratified and SobolBlue share space out among them

@@ -87,7 +87,8 @@ void main() {
         const vec2 lobe = sample2D(SAMPLER_SOBOL, numbers, dimension);
         const SurfaceBsdf bsdf = surfaceBsdf(s, path.direction, lobe.y, path.throughput);
         SurfaceSample next = sampleSurface(bsdf, s, sample2D(SAMPLER_SOBOL, numbers, dimension + 1u), lobe.x);
-        surfaceValues(bsdf, s, s.face, false, 0.0, next);
+        SurfaceValue unasked[1];
+        surfaceValues(bsdf, s, vec3[1](s.face), false, 0.0, next, unasked);
         const bool narrow = next.density < 0.0 || next.density > PHOTON_NARROW;
         if (alive && depth > 0u && next.goes && !narrow && takesGuide(bsdf)) {
             place = vec4(s.position, dot(path.throughput, vec3(1.0 / 3.0)));

@@ -71,17 +71,30 @@ void main() {
         } while (SKIPS_MISSES && subgroupAll(skips));
 
         bool cut;
-        ShadowRay shadow;
+        ShadowRay shadows[LIGHT_SAMPLES];
 #ifdef BOUNCES
         const uint depth = path.depth;
         const vec3 before = path.radiance;
         path.radiance = vec3(0.0);
 #endif
-        bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, shadow, cut);
-        bool blocked;
-        float passes;
-        const int shadowTurns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
-        const vec3 direct = shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
+        bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, shadows, cut);
+        vec3 direct = vec3(0.0);
+#if LIGHT_SAMPLES > 1
+        [[dont_unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i)
+#endif
+        {
+            const ShadowRay shadow = shadows[0];
+            bool blocked;
+            float passes;
+            const int turns = shadowed(shadow.origin, shadow.direction, path.source, shadow.target, shadow.limit, blocked, passes);
+            direct += shadow.limit > 0.0 && !blocked ? shadow.radiance * passes : vec3(0.0);
+            shadowRays += shadow.limit > 0.0 ? 1u : 0u;
+            if (COUNT_TURNS) {
+                abandonedRays += turns >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
+                spent += uint(subgroupMax(turns));
+            }
+            [[unroll]] for (int j = 1; j < LIGHT_SAMPLES; ++j) shadows[j - 1] = shadows[j];
+        }
 #ifdef BOUNCES
         addBounce(pixel, parameters.size, depth, path.radiance);
         addBounce(pixel, parameters.size, depth + 1u, direct);
@@ -92,7 +105,6 @@ void main() {
 #ifdef CAMERA_TABLE
         alive = alive && largestOf(path.throughput) > 0.0;  // where the camera sees nothing
 #endif
-        shadowRays += shadow.limit > 0.0 ? 1u : 0u;
         bounceRays += alive ? 1u : 0u;
         cutPaths += cut ? parameters.countCut : 0u;
         if (!alive && !between) {
@@ -101,10 +113,6 @@ void main() {
             between = true;
         }
         spent += LOOP_TURNS;
-        if (COUNT_TURNS) {
-            abandonedRays += shadowTurns >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
-            spent += uint(subgroupMax(shadowTurns));
-        }
     }
 
     const bool finished = path.sampleIndex >= sampleEnd;

@@ -14,7 +14,7 @@ namespace helio {
 namespace {
 
 constexpr std::uint32_t kShadowQueue = 2;
-constexpr std::uint64_t kShadowBytes = 3 * 16;  ///< of a pixel in uShadows
+constexpr std::uint64_t kShadowBytes = 3 * 16;  ///< of a ray in uShadows
 
 /** uLengths of wavefront.glsl with nothing in any queue. */
 constexpr std::array<std::uint32_t, 12> kEmpty = {0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0};
@@ -22,15 +22,17 @@ constexpr std::array<std::uint32_t, 12> kEmpty = {0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 
 }  // namespace
 
 std::uint64_t Wavefront::mostPixels(const Device& device) {
-    return std::min<std::uint64_t>(65535ull * 128, device.info().maxStorageBufferRange / kShadowBytes);
+    return std::min<std::uint64_t>(65535ull * 128,
+                                   device.info().maxStorageBufferRange / (kShadowBytes * kMostLightSamples));
 }
 
-Wavefront::Wavefront(Device& device, std::array<std::uint32_t, 2> size)
+Wavefront::Wavefront(Device& device, std::array<std::uint32_t, 2> size, std::uint32_t lightSamples)
     : pixels_(std::uint64_t(size[0]) * size[1]),
       queues_(device, "wavefront.queues", pixels_ * 3 * 4),
       lengths_(device, "wavefront.lengths", sizeof kEmpty),
       hits_(device, "wavefront.hits", pixels_ * 8),
-      shadows_(device, "wavefront.shadows", pixels_ * kShadowBytes) {
+      shadows_(device, "wavefront.shadows", pixels_ * kShadowBytes * lightSamples) {
+    assert(lightSamples <= kMostLightSamples);
     assert(pixels_ > 0 && pixels_ <= mostPixels(device));
 }
 

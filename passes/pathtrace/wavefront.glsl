@@ -19,13 +19,19 @@ layout(set = 0, binding = 50, std430) buffer Queues { uint pixels[]; } uQueues;
 layout(set = 0, binding = 51, std430) buffer Lengths { uvec4 queue[3]; } uLengths;
 /** Of each pixel: bits of the distance, slot (-1: none). */
 layout(set = 0, binding = 52, std430) buffer Hits { uvec2 hits[]; } uHits;
-/** Of each pixel three, floats by their bits: origin, target.x; direction, target.y; radiance (what arrives, once the ray
- * has been asked), WAITING bits. */
+/** Of each pixel's LIGHT_SAMPLES rays to lights three, floats by their bits: origin, target.x; direction, target.y;
+ * radiance, WAITING bits. What arrives by all of them takes the first's radiance once they have been asked. */
 layout(set = 0, binding = 53, std430) buffer Shadows { uvec4 shadows[]; } uShadows;
 
 const uint SHADOW_QUEUE = 2u;
-/** What waits with a pixel: the end of its sample, its state as an earlier dispatch left it, an infinite shadow ray. */
-const uint WAITING_END = 1u, WAITING_BEGIN = 2u, WAITING_INFINITE = 4u;
+/** What waits with a pixel: the end of its sample, its state as an earlier dispatch left it; with a ray: that it is asked,
+ * and infinite. */
+const uint WAITING_END = 1u, WAITING_BEGIN = 2u, WAITING_ASKS = 8u, WAITING_INFINITE = 4u;
+
+/** The first word of a pixel's i-th ray in uShadows. */
+uint shadowPlace(uint index, uint i) {
+    return (index * uint(LIGHT_SAMPLES) + i) * 3u;
+}
 
 uint pixelCount() {
     return parameters.size.x * parameters.size.y;

@@ -15,6 +15,9 @@
 
 namespace helio {
 
+/** Directions to lights that paths ask at most where the camera's ray arrives (LIGHT_SAMPLES). */
+inline constexpr std::uint32_t kMostLightSamples = 4;
+
 /** Rounds of kernels over a picture's pixels. State between calls is trace.comp's: either can go on with it.
  */
 class Wavefront {
@@ -30,7 +33,8 @@ public:
      */
     static std::uint64_t mostPixels(const Device& device);
 
-    Wavefront(Device& device, std::array<std::uint32_t, 2> size);
+    /** `lightSamples`: LIGHT_SAMPLES of its kernels, at most kMostLightSamples. */
+    Wavefront(Device& device, std::array<std::uint32_t, 2> size, std::uint32_t lightSamples);
 
     /** Declares the passes of a round. */
     void declare(Graph& graph, const Interface& interface);

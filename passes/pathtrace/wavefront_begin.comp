@@ -24,7 +24,7 @@ void main() {
             imageStore(uState, stateTexel(pixel), vec4(0.0));
             imageStore(uState, stateTexel(pixel) + ivec2(3, 1), vec4(0.0));
         }
-        if (open) uShadows.shadows[index * 3u + 2u] = uvec4(0u, 0u, 0u, WAITING_BEGIN);
+        if (open) uShadows.shadows[shadowPlace(index, 0u) + 2u] = uvec4(0u, 0u, 0u, WAITING_BEGIN);
         enqueue(queue, index, open);
     } else if (index == 0u) {
         uLengths.queue[1u - queue] = uvec4(0u, 1u, 1u, 0u);

@@ -17,7 +17,7 @@ void main() {
     bool open = false;
     if (waits) {
         const uvec2 pixel = pixelOf(index);
-        const uvec4 arrived = uShadows.shadows[index * 3u + 2u];
+        const uvec4 arrived = uShadows.shadows[shadowPlace(index, 0u) + 2u];
         const vec3 light = uintBitsToFloat(arrived.xyz);
         const uint waiting = arrived.w;
         const uint kept = loadKept(pixel);

@@ -27,9 +27,9 @@ void main() {
         const vec3 before = path.radiance;
         path.radiance = vec3(0.0);
 #endif
-        ShadowRay shadow;
+        ShadowRay rays[LIGHT_SAMPLES];
         bool cut;
-        bool alive = scatter(path, numbers, uintBitsToFloat(hit.x), slot, parameters.maxDepth, shadow, cut);
+        bool alive = scatter(path, numbers, uintBitsToFloat(hit.x), slot, parameters.maxDepth, rays, cut);
 #ifdef BOUNCES
         addBounce(pixel, parameters.size, depth, path.radiance);
         path.radiance += before;
@@ -37,16 +37,22 @@ void main() {
 #ifdef CAMERA_TABLE
         alive = alive && largestOf(path.throughput) > 0.0;  // where the camera sees nothing
 #endif
-        asks = shadow.limit > 0.0;
         bounceRays = alive ? 1u : 0u;
         cutPaths = cut ? parameters.countCut : 0u;
         storePath(pixel, path);
         imageStore(uState, stateTexel(pixel) + ivec2(1, 1),
                    vec4(imageLoad(uState, stateTexel(pixel) + ivec2(1, 1)).xyz, float(path.lightPlace)));
-        const uint waiting = (alive ? 0u : WAITING_END) | (shadow.limit == INFINITE_DISTANCE ? WAITING_INFINITE : 0u);
-        uShadows.shadows[index * 3u] = uvec4(floatBitsToUint(shadow.origin), uint(shadow.target.x));
-        uShadows.shadows[index * 3u + 1u] = uvec4(floatBitsToUint(shadow.direction), uint(shadow.target.y));
-        uShadows.shadows[index * 3u + 2u] = uvec4(floatBitsToUint(asks ? shadow.radiance : vec3(0.0)), waiting);
+        [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+            const ShadowRay ray = rays[i];
+            const bool asked = ray.limit > 0.0;
+            const uint waiting = (alive ? 0u : WAITING_END) | (asked ? WAITING_ASKS : 0u) |
+                                 (ray.limit == INFINITE_DISTANCE ? WAITING_INFINITE : 0u);
+            const uint place = shadowPlace(index, uint(i));
+            uShadows.shadows[place] = uvec4(floatBitsToUint(ray.origin), uint(ray.target.x));
+            uShadows.shadows[place + 1u] = uvec4(floatBitsToUint(ray.direction), uint(ray.target.y));
+            uShadows.shadows[place + 2u] = uvec4(floatBitsToUint(asked ? ray.radiance : vec3(0.0)), waiting);
+            asks = asks || asked;
+        }
     }
     enqueue(SHADOW_QUEUE, index, asks);
     COUNT(bounce, bounceRays)

@@ -84,6 +84,14 @@ FN PixelSampler startSample(uint kind, uint pixel, uint sampleIndex, uint seed) 
     return startSample(kind, pixel, sampleIndex, seed, 0u);
 }
 
+/// The i-th of n samples that one sample is split into. A dimension is to be asked of all of them, or of the sample itself.
+FN PixelSampler splitSample(uint kind, PixelSampler s, uint n, uint i) {
+    const bool reversed = kind == SAMPLER_SOBOL || kind == SAMPLER_SOBOL_BLUE;
+    const uint index = (reversed ? bitfieldReverse(s.index) : s.index) * n + i;
+    s.index = reversed ? bitfieldReverse(index) : index;
+    return s;
+}
+
 /// Nested uniform (Owen) scramble of a bit-reversed number: bit i of the result is bit i flipped by a hash of
 /// the bits below it. Only left-propagating steps: multiplication by an even number before xor, by an odd one,
 /// addition.

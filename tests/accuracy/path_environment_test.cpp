@@ -105,10 +105,12 @@ TextureImage lobe(std::uint32_t width, int n) {
 
 TEST(PathEnvironment, IrradianceOfCosineLobes) {
     for (int n : {1, 4, 16})
-        for (const std::string how : {"sampled", "met by chance", "sampled alone"}) {
+        for (const std::string how : {"sampled", "sampled four times", "met by chance", "sampled alone",
+                                      "sampled four times alone"}) {
             PathTraceOptions o = options(16);
+            if (how.find("four times") != std::string::npos) o.lightSamples = 4;
             o.nextEventEstimation = how != "met by chance";
-            o.whitted = how == "sampled alone";
+            o.whitted = how.ends_with("alone");
             const double truth = 2.0 / (n + 2);
             const Traced image =
                 trace(receiver({0, 1, 0}, lobe(1024, n)).scene, o, o.nextEventEstimation ? 256 : 1024);
