@@ -75,9 +75,9 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return r;
 }
 /** Values of directions to lights, where one `asks`, and of the direction drawn. */
-void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
-                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
-    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHTS_ASKED], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHTS_ASKED]) {
+    [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i) {
         const float cosine = dot(s.shading, toLights[i]);
         lit[i] = SurfaceValue(dot(s.face, toLights[i]) > 0.0 ? cosine * INV_PI : 0.0, bsdf.albedo);
     }

@@ -254,8 +254,8 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
     return SurfaceSample(chosen.direction, chosen.weight, chosen.density, !bsdf.unlit && chosen.density != 0.0);
 }
 
-void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
-                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHTS_ASKED], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHTS_ASKED]) {
     // One walk judges one light: there is but one sample.
     const FacetWalk walk = walkFacets(bsdf, bsdf.facets, bsdf.folds, bsdf.facetKey, toLights[0], asks, lightDensity,
                                       ScatterSample(next.direction, next.weight, next.density));
@@ -281,23 +281,23 @@ SurfaceSample sampleSurface(SurfaceBsdf bsdf, SurfacePoint s, vec2 u, float choi
 
 /** Values of directions to lights, where one `asks`, and of the direction drawn: each of the lobe there, and of what
  * is mirrored to it. One loop, not unrolled: the code of all materials is in the kernel once. */
-void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES], const bool asks, float lightDensity,
-                   inout SurfaceSample next, out SurfaceValue lit[LIGHT_SAMPLES]) {
+void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHTS_ASKED], const bool asks, float lightDensity,
+                   inout SurfaceSample next, out SurfaceValue lit[LIGHTS_ASKED]) {
     ScatterValue drawn = noScattering();
-    ScatterValue values[LIGHT_SAMPLES];
-    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) values[i] = noScattering();
-    const int ways = HAS_TILTED_LOBES ? 2 : 1, last = LIGHT_SAMPLES * ways;
+    ScatterValue values[LIGHTS_ASKED];
+    [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i) values[i] = noScattering();
+    const int ways = HAS_TILTED_LOBES ? 2 : 1, last = LIGHTS_ASKED * ways;
     [[dont_unroll]] for (int i = asks ? 0 : last; i < last + ways; ++i) {
         const bool isDrawn = i >= last;
         vec3 wi = next.direction;
-        [[unroll]] for (int j = 0; j < LIGHT_SAMPLES; ++j) wi = i >= j * ways && i < (j + 1) * ways ? toLights[j] : wi;
+        [[unroll]] for (int j = 0; j < LIGHTS_ASKED; ++j) wi = i >= j * ways && i < (j + 1) * ways ? toLights[j] : wi;
         const float height = dot(s.face, wi);
         const bool above = height > 0.0, mirrors = HAS_TILTED_LOBES && (i & 1) == 1;
         const vec3 local = (wi - (mirrors ? 2.0 * height : 0.0) * s.face) * bsdf.frame;
         const bool counts = (local.z > 0.0) == above && (HAS_LIGHT_THROUGH || above);
         const ScatterValue v = localValue(bsdf, local);
         if (counts && isDrawn) drawn = ScatterValue(drawn.value + v.value, drawn.density + v.density);
-        [[unroll]] for (int j = 0; j < LIGHT_SAMPLES; ++j)
+        [[unroll]] for (int j = 0; j < LIGHTS_ASKED; ++j)
             if (counts && i >= j * ways && i < (j + 1) * ways)
                 values[j] = ScatterValue(values[j].value + v.value, values[j].density + v.density);
     }
@@ -306,7 +306,7 @@ void surfaceValues(SurfaceBsdf bsdf, SurfacePoint s, vec3 toLights[LIGHT_SAMPLES
         next.weight = drawn.density > 0.0 ? drawn.value / drawn.density : vec3(0.0);
     }
     next.goes = next.goes && max(max(next.weight.x, next.weight.y), next.weight.z) > 0.0;
-    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i)
+    [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i)
         lit[i] = SurfaceValue(values[i].density, values[i].density > 0.0 ? values[i].value / values[i].density : vec3(0.0));
 }
 #endif

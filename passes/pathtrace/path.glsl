@@ -81,7 +81,7 @@ float largestOf(vec3 v) {
  * where it ends only because of maxDepth. Where nothing was met (`slot` < 0), nothing is added or asked.
  */
 bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, uint maxDepth,
-             out ShadowRay shadows[LIGHT_SAMPLES], out bool cut) {
+             out ShadowRay shadows[LIGHTS_ASKED], out bool cut) {
     const bool hit = slot >= 0;
     const SurfacePoint s = surfaceAt(path.origin, path.direction, path.source, max(slot, 0));
     if (hit) path.throughput *= throughMedium(s, path.direction, path.source, distance);
@@ -144,25 +144,25 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
         next.density = turn.x * INV_PI;  // by which its worth is found
         next.goes = dot(s.face, next.direction) > 0.0;
     }
-    LightSample lights[LIGHT_SAMPLES];
-    vec3 toLights[LIGHT_SAMPLES];
-    SurfaceValue scattered[LIGHT_SAMPLES];
-    const bool asksSeveral = LIGHT_SAMPLES > 1 && path.depth == 0u;
+    LightSample lights[LIGHTS_ASKED];
+    vec3 toLights[LIGHTS_ASKED];
+    SurfaceValue scattered[LIGHTS_ASKED];
+    const bool asksSeveral = LIGHTS_ASKED > 1 && path.depth == 0u;
     if (LIGHT_COUNT > 0) {
         path.lightPlace = lightPlace(s.position, lightSide(bsdf, s));
-#if LIGHT_SAMPLES == 1
+#if LIGHTS_ASKED == 1
         lights[0] = sampleLight(s.position, path.lightPlace, choice.x, sampleBits2D(SAMPLER_KIND, numbers, dimension));
 #else
-        [[dont_unroll]] for (uint i = 0u; i < (asksSeveral ? uint(LIGHT_SAMPLES) : 1u); ++i) {
+        [[dont_unroll]] for (uint i = 0u; i < (asksSeveral ? uint(LIGHTS_ASKED) : 1u); ++i) {
             PixelSampler of = numbers;
-            if (asksSeveral) of = splitSample(SAMPLER_KIND, numbers, LIGHT_SAMPLES, i);
-            [[unroll]] for (int j = LIGHT_SAMPLES - 1; j > 0; --j) lights[j] = lights[j - 1];
+            if (asksSeveral) of = splitSample(SAMPLER_KIND, numbers, LIGHTS_ASKED, i);
+            [[unroll]] for (int j = LIGHTS_ASKED - 1; j > 0; --j) lights[j] = lights[j - 1];
             lights[0] = sampleLight(s.position, path.lightPlace, sampleBits2D(SAMPLER_KIND, of, dimension + 2u).x,
                                     sampleBits2D(SAMPLER_KIND, of, dimension));
         }
 #endif
     }
-    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) toLights[i] = LIGHT_COUNT > 0 ? lights[i].direction : s.face;
+    [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i) toLights[i] = LIGHT_COUNT > 0 ? lights[i].direction : s.face;
     surfaceValues(bsdf, s, toLights, LIGHT_COUNT > 0, WHITTED || LIGHT_COUNT == 0 ? 0.0 : lights[0].density, next, scattered);
 #ifdef GUIDED
     // What is drawn from both is worth its value over both densities. Against light sampling it is weighed by the
@@ -172,8 +172,8 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     if (next.density > 0.0) next.weight *= next.density / mix(next.density, fromTable, guide.share);
 #endif
 
-    const float several = asksSeveral ? float(LIGHT_SAMPLES) : 1.0;
-    [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+    const float several = asksSeveral ? float(LIGHTS_ASKED) : 1.0;
+    [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i) {
         shadows[i] = ShadowRay(s.position, vec3(0.0, 0.0, 1.0), 0.0, ivec2(1, 0), vec3(0.0));
         if (LIGHT_COUNT > 0) {
             const LightSample light = lights[i];
@@ -195,7 +195,7 @@ bool scatter(inout Path path, PixelSampler numbers, float distance, int slot, ui
     }
     if (WHITTED) next.goes = next.goes && next.density < 0.0;
     path.direction = next.direction;
-    path.density = LIGHT_SAMPLES > 1 ? next.density / several : next.density;  // weighed against all of the samples
+    path.density = next.density / several;  // to be weighed against one of the samples
     path.throughput *= next.weight;
     path.origin = leaving(s, next.direction);
     path.source = slot;

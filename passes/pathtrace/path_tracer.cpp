@@ -98,7 +98,7 @@ struct PathTracer::Impl {
         declareTrace(film);
     }
 
-    /** LIGHT_SAMPLES of the kernels. */
+    /** LIGHTS_ASKED of the kernels. */
     std::uint32_t lightSamples() const {
         assert(options_.lightSamples >= 1 && options_.lightSamples <= kMostLightSamples);
         const PackedScene& info = scene_.info();
@@ -199,7 +199,7 @@ struct PathTracer::Impl {
             spec.merge(bounces_->constants());
             bounces.push_back({"uBounces", bounces_->import(graph)});
         }
-        if (lightSamples() > 1) defines["LIGHT_SAMPLES"] = std::to_string(lightSamples());
+        if (lightSamples() > 1) defines["LIGHTS_ASKED"] = std::to_string(lightSamples());
         if (options_.meter) defines["METER"] = "1";
         std::vector<Binding> points;
         if (!options_.meterPoints.empty()) {

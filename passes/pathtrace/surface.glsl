@@ -9,8 +9,8 @@
 
 /** Directions to lights that are asked where the camera's ray arrives; at later surfaces it is one. The rays to a surface
  * and on from it cost more than one to a light, which brings most of the noise where lamps or surroundings are large. */
-#ifndef LIGHT_SAMPLES
-#define LIGHT_SAMPLES 1
+#ifndef LIGHTS_ASKED
+#define LIGHTS_ASKED 1
 #endif
 
 /** Where a ray met the scene. */

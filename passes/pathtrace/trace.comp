@@ -71,7 +71,7 @@ void main() {
         } while (SKIPS_MISSES && subgroupAll(skips));
 
         bool cut;
-        ShadowRay shadows[LIGHT_SAMPLES];
+        ShadowRay shadows[LIGHTS_ASKED];
 #ifdef BOUNCES
         const uint depth = path.depth;
         const vec3 before = path.radiance;
@@ -79,8 +79,8 @@ void main() {
 #endif
         bool alive = scatter(path, numbers, distance, slot, parameters.maxDepth, shadows, cut);
         vec3 direct = vec3(0.0);
-#if LIGHT_SAMPLES > 1
-        [[dont_unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i)
+#if LIGHTS_ASKED > 1
+        [[dont_unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i)
 #endif
         {
             const ShadowRay shadow = shadows[0];
@@ -93,7 +93,7 @@ void main() {
                 abandonedRays += turns >= MAX_TRAVERSAL_STEPS ? 1u : 0u;
                 spent += uint(subgroupMax(turns));
             }
-            [[unroll]] for (int j = 1; j < LIGHT_SAMPLES; ++j) shadows[j - 1] = shadows[j];
+            [[unroll]] for (int j = 1; j < LIGHTS_ASKED; ++j) shadows[j - 1] = shadows[j];
         }
 #ifdef BOUNCES
         addBounce(pixel, parameters.size, depth, path.radiance);

@@ -19,7 +19,7 @@ layout(set = 0, binding = 50, std430) buffer Queues { uint pixels[]; } uQueues;
 layout(set = 0, binding = 51, std430) buffer Lengths { uvec4 queue[3]; } uLengths;
 /** Of each pixel: bits of the distance, slot (-1: none). */
 layout(set = 0, binding = 52, std430) buffer Hits { uvec2 hits[]; } uHits;
-/** Of each pixel's LIGHT_SAMPLES rays to lights three, floats by their bits: origin, target.x; direction, target.y;
+/** Of each pixel's LIGHTS_ASKED rays to lights three, floats by their bits: origin, target.x; direction, target.y;
  * radiance, WAITING bits. What arrives by all of them takes the first's radiance once they have been asked. */
 layout(set = 0, binding = 53, std430) buffer Shadows { uvec4 shadows[]; } uShadows;
 
@@ -30,7 +30,7 @@ const uint WAITING_END = 1u, WAITING_BEGIN = 2u, WAITING_ASKS = 8u, WAITING_INFI
 
 /** The first word of a pixel's i-th ray in uShadows. */
 uint shadowPlace(uint index, uint i) {
-    return (index * uint(LIGHT_SAMPLES) + i) * 3u;
+    return (index * uint(LIGHTS_ASKED) + i) * 3u;
 }
 
 uint pixelCount() {

@@ -15,7 +15,7 @@
 
 namespace helio {
 
-/** Directions to lights that paths ask at most where the camera's ray arrives (LIGHT_SAMPLES). */
+/** Directions to lights that paths ask at most where the camera's ray arrives (LIGHTS_ASKED). */
 inline constexpr std::uint32_t kMostLightSamples = 4;
 
 /** Rounds of kernels over a picture's pixels. State between calls is trace.comp's: either can go on with it.
@@ -33,7 +33,7 @@ public:
      */
     static std::uint64_t mostPixels(const Device& device);
 
-    /** `lightSamples`: LIGHT_SAMPLES of its kernels, at most kMostLightSamples. */
+    /** `lightSamples`: LIGHTS_ASKED of its kernels, at most kMostLightSamples. */
     Wavefront(Device& device, std::array<std::uint32_t, 2> size, std::uint32_t lightSamples);
 
     /** Declares the passes of a round. */

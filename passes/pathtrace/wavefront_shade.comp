@@ -27,7 +27,7 @@ void main() {
         const vec3 before = path.radiance;
         path.radiance = vec3(0.0);
 #endif
-        ShadowRay rays[LIGHT_SAMPLES];
+        ShadowRay rays[LIGHTS_ASKED];
         bool cut;
         bool alive = scatter(path, numbers, uintBitsToFloat(hit.x), slot, parameters.maxDepth, rays, cut);
 #ifdef BOUNCES
@@ -42,7 +42,7 @@ void main() {
         storePath(pixel, path);
         imageStore(uState, stateTexel(pixel) + ivec2(1, 1),
                    vec4(imageLoad(uState, stateTexel(pixel) + ivec2(1, 1)).xyz, float(path.lightPlace)));
-        [[unroll]] for (int i = 0; i < LIGHT_SAMPLES; ++i) {
+        [[unroll]] for (int i = 0; i < LIGHTS_ASKED; ++i) {
             const ShadowRay ray = rays[i];
             const bool asked = ray.limit > 0.0;
             const uint waiting = (alive ? 0u : WAITING_END) | (asked ? WAITING_ASKS : 0u) |

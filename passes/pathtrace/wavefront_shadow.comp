@@ -18,10 +18,10 @@ void main() {
 #endif
         const int source = loadPath(pixel).source;
         vec3 arrived = vec3(0.0);
-#if LIGHT_SAMPLES > 1
+#if LIGHTS_ASKED > 1
         [[dont_unroll]]
 #endif
-        for (uint i = 0u; i < uint(LIGHT_SAMPLES); ++i) {
+        for (uint i = 0u; i < uint(LIGHTS_ASKED); ++i) {
             const uint place = shadowPlace(index, i);
             const uvec4 from = uShadows.shadows[place], towards = uShadows.shadows[place + 1u], light = uShadows.shadows[place + 2u];
             const bool asks = (light.w & WAITING_ASKS) != 0u;

@@ -21,9 +21,9 @@ layout(set = 0, binding = 21) uniform usamplerBuffer uNodes;
 layout(constant_id = 120) const int STACK_SIZE = 64;
 
 /** See traverse.glsl. */
-#if defined(SHAPES) && defined(LIGHT_SAMPLES)
+#if defined(SHAPES) && defined(LIGHTS_ASKED)
 const int MAX_TRAVERSAL_STEPS = 4000;
-#elif defined(SHAPES) || defined(LIGHT_SAMPLES)
+#elif defined(SHAPES) || defined(LIGHTS_ASKED)
 const int MAX_TRAVERSAL_STEPS = 8000;
 #else
 const int MAX_TRAVERSAL_STEPS = 16000;

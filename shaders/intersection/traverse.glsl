@@ -52,9 +52,9 @@ layout(constant_id = 119) const bool SPLIT_TREE = false;
 
 /** Turns a ray may take before it is given up and counted: lavapipe runs 65,535 turns of all loops of an
  * invocation and then silently stops. */
-#if defined(SHAPES) && defined(LIGHT_SAMPLES)
+#if defined(SHAPES) && defined(LIGHTS_ASKED)
 const int MAX_TRAVERSAL_STEPS = 4000;
-#elif defined(SHAPES) || defined(LIGHT_SAMPLES)
+#elif defined(SHAPES) || defined(LIGHTS_ASKED)
 const int MAX_TRAVERSAL_STEPS = 8000;  // listed shapes take as many; rays to several lights follow one another
 #else
 const int MAX_TRAVERSAL_STEPS = 16000;
