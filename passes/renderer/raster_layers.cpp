@@ -30,6 +30,7 @@ void RasterSession::drawLayers(const RasterView& view, RenderJob& job) {
         layers_->draw([&](const std::vector<PassTiming>& times) { job.addTimings(times); });
     drawn_.layers = std::max(drawn_.layers, drawing.layers);
     drawn_.open = std::max(drawn_.open, drawing.open);
+    drawn_.pictures = std::max(drawn_.pictures, drawing.pictures);
     for (const RasterCounters& counters : drawing.counters) addWork(counters);
     shaded_ += std::uint64_t(size_[0]) * size_[1] * drawing.layers;
 }

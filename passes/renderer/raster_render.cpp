@@ -298,6 +298,7 @@ void RasterSession::noteCounters(RenderResult& result) const {
         result.counters.emplace_back("clusters_hidden", work_.clustersHidden);
     }
     if (layers_ || masks_) result.counters.emplace_back("alpha_layers", drawn_.layers);
+    if (layers_ && shade_.transmits()) result.counters.emplace_back("refraction_pictures", drawn_.pictures);
     if (corners_ > 0) result.counters.emplace_back("corners_shaded", corners_);
 }
 
@@ -338,6 +339,9 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
         result.warnings.push_back(
             fmt::format("{} texels of shadow maps have more than {} masked surfaces one behind another",
                         openTexels_, AlphaLayers::kMaxLayers));
+    if (shade_.transmits() && !layers_)
+        result.skipped.emplace_back(
+            "transmission", "multisampling draws glass as opaque; supersampling shows what is behind it");
     if (shade_.blends() && !layers_)
         result.skipped.emplace_back(
             "blending", "multisampling draws blended surfaces as opaque; supersampling shows them");

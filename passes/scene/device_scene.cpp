@@ -93,6 +93,7 @@ DeviceScene::DeviceScene(Device& device, const Scene& scene, std::span<const Sce
     upload("uTexels8", info_.texels8, Format::R32UI);
     upload("uTexelsFloat", info_.texelsFloat, Format::Undefined);
     if (info_.solidTextures) upload("uSolidPoints", info_.solidPoints, Format::Undefined);
+    if (!info_.instanceScales.empty()) upload("uInstanceScales", info_.instanceScales, Format::R32F);
     if (info_.motionKeys > 0) {
         upload("uTriangleKeys", info_.triangleKeys, Format::Undefined);
         upload("uNormalKeys", info_.normalKeys, Format::Undefined);

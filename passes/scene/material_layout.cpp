@@ -22,6 +22,7 @@ enum Row : std::uint32_t {
     kAnisotropyRow = 34,
     kIridescenceRow = 36,
     kIridescenceThicknessRow = 38,
+    kThicknessRow = 40,  // of materials that are glTF's; the others have their model there
     kHeightRow = 43,
     kOcclusionRow = 47
 };
@@ -38,6 +39,14 @@ bool isMoreThanDiffuse(const Material& m) {
     return m.metallic > 0.0f || m.specular > 0.0f || m.transmission > 0.0f || m.clearcoat > 0.0f ||
            hasSheen(m);
 }
+
+}  // namespace
+
+bool hasVolume(const Material& m) {
+    return m.transmission > 0.0f && m.thickness > 0.0f && !m.unlit && !m.scattering;
+}
+
+namespace {
 
 std::uint32_t gltfFeatures(const Material& m) {
     std::uint32_t bits =
@@ -154,6 +163,7 @@ std::vector<SampledTexture> sampledTextures(const Material& m, bool occlusion) {
     add(m.anisotropyTexture, kAnisotropyRow, false, bits & kAnisotropyTextureFeature);
     add(m.iridescenceTexture, kIridescenceRow, false, bits & kIridescenceTextureFeature);
     add(m.iridescenceThicknessTexture, kIridescenceThicknessRow, false, bits & kIridescenceTextureFeature);
+    add(m.thicknessTexture, kThicknessRow, false, occlusion && hasVolume(m));
     // A lightmap has what hides its surface in it.
     add(m.lightmapTexture, kOcclusionRow, false, occlusion && !m.unlit);
     add(m.occlusionTexture, kOcclusionRow, false,

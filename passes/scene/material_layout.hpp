@@ -55,13 +55,16 @@ bool hasWideLobes(const Material& material);
 /** Whether light goes on from it in a narrow cone, as from mirrors and glass, much as it came. */
 bool throwsCaustics(const Material& material);
 
+/** Whether a volume of glTF's model lies behind its surface. */
+bool hasVolume(const Material& material);
+
 /** A texture that kernels sample. */
 struct SampledTexture {
     const TextureUse* use = nullptr;
     std::uint32_t row = 0;  ///< of the material's texels: its transform's rows, with texture and slot
     bool color = false;     ///< decoded from sRGB
 };
-/** All of a material's, base colour and emission first. `occlusion`: that of occlusion too. */
+/** All of a material's, base colour and emission first. `occlusion`: those of occlusion and thickness too. */
 std::vector<SampledTexture> sampledTextures(const Material& material, bool occlusion = false);
 
 /** The sets of texture coordinates that triangles of this material carry; -1 for none. */

@@ -214,7 +214,7 @@ void addParameters(const Material& m, Rows& rows) {
                 m.iridescenceIor};
     // Without a texture the film's thickness is the largest.
     rows[13] = {m.iridescenceThicknessTexture ? m.iridescenceThicknessMinimum : m.iridescenceThicknessMaximum,
-                m.iridescenceThicknessMaximum, m.lightmapTexture ? 0.0f : m.occlusionStrength, 0.0f};
+                m.iridescenceThicknessMaximum, m.lightmapTexture ? 0.0f : m.occlusionStrength, m.thickness};
     if (m.solid) {
         rows[45] = {m.solid->first, glm::uintBitsToFloat(std::uint32_t(m.solid->pattern) + 1u)};
         rows[46] = {m.solid->second, m.solid->scale};
@@ -262,6 +262,7 @@ void materials(const Scene& scene, const std::vector<bool>& materialUsed, Packed
         addParameters(material, rows);
         for (std::size_t row = 3; row < 40; row = row == 5 ? 14 : row + 2)
             rows[row].w = glm::uintBitsToFloat(std::uint32_t(-1));
+        if (!material.scattering) rows[40].w = glm::uintBitsToFloat(std::uint32_t(-1));
         rows[43].w = rows[47].w = glm::uintBitsToFloat(std::uint32_t(-1));
         if (materialUsed[i]) {
             const std::uint32_t features = materialFeatures(material);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <optional>
@@ -61,8 +62,13 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
                "a lightmap holds irradiance, of which the raster pipeline shows diffuse light");
         const bool through = m.scattering && (m.scattering->model == Scattering::Model::Dielectric ||
                                               m.scattering->model == Scattering::Model::ThinDielectric);
-        skipIf((features & kTransmissionFeature) != 0 || through, "transmission",
-               "the raster pipeline shows no light that goes through surfaces");
+        const bool thick = hasVolume(m) || (through && m.scattering->model == Scattering::Model::Dielectric);
+        skipIf((features & kTransmissionFeature) != 0 || through, "light through surfaces onto others",
+               "the raster pipeline shows what is seen through surfaces");
+        skipIf(
+            thick, "shape of volumes",
+            "the raster pipeline lets light leave a volume through a face parallel to the first, after the "
+            "material's thickness (0 without one)");
         const std::size_t filtered =
             std::size_t(bool(m.baseColorTexture)) +
             std::size_t(m.emissiveTexture && m.emission != glm::vec3(0.0f)) +
@@ -78,6 +84,14 @@ NotShown materialsNotShown(const Scene& scene, const std::vector<bool>& material
 }
 
 }  // namespace
+
+bool PackedScene::transmits() const {
+    using Model = Scattering::Model;
+    const auto bit = [](Model model) { return pack::kFirstModelFeature << std::uint32_t(model); };
+    const std::uint32_t through =
+        pack::kTransmissionFeature | bit(Model::Dielectric) | bit(Model::ThinDielectric);
+    return (materialFeatures & through) != 0;
+}
 
 // A pass that learns to shade one of these takes its line out.
 std::vector<std::pair<std::string, std::string>> pack::notShown(const Scene& scene,
@@ -232,6 +246,7 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
     packed.lightmaps = options.occlusion && std::ranges::any_of(scene.materials, [](const Material& m) {
                            return m.lightmapTexture && !m.unlit;
                        });
+    packed.volumes = options.occlusion && std::ranges::any_of(scene.materials, pack::hasVolume);
     std::vector<pack::Surface> surfaces;
     const bool places = later.empty() && options.tree && options.accelerator == AcceleratorKind::Bvh;
     pack::PlacedMeshes placed = places ? pack::choosePlaced(scene, options) : pack::PlacedMeshes();
@@ -261,6 +276,10 @@ PackedScene packScene(const Scene& scene, std::span<const Scene> later, const Pa
     for (const pack::Surface& surface : surfaces) materialUsed[surface.material] = true;
     pack::materials(scene, materialUsed, packed);
     pack::environment(scene, options, packed);
+    if (options.occlusion && packed.transmits())
+        for (const Instance& instance : scene.instances())
+            packed.instanceScales.push_back(
+                float(std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.transform))))));
     if (trees) {
         std::vector<glm::vec3> lit(positions.begin(), positions.begin() + std::ptrdiff_t(flattened * 3));
         const std::vector<glm::vec3> samples = pack::placedSamples(placed, positions);

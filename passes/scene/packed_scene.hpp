@@ -98,8 +98,8 @@ struct PackOptions {
     Placing placing = Placing::Flatten;
     /** Triangles take the place of shapes. */
     bool shapesAsTriangles = false;
-    /** Occlusion textures are packed, which dim the light of surroundings that nothing is traced to, and
-     * lightmaps. */
+    /** What rasterization needs is packed: occlusion textures, which dim the light of surroundings that
+     * nothing is traced to, lightmaps, and thicknesses of volumes. */
     bool occlusion = false;
     /** PackedScene::photonTargets is made. */
     bool photons = false;
@@ -211,13 +211,19 @@ struct PackedScene {
     bool occlusionTextures = false;  ///< of PackOptions::occlusion, where there are surroundings to dim
     bool lightmaps = false;  ///< of PackOptions::occlusion: some material shows the light of a texture
     /** Whether textures of light at rest are packed. */
-    bool bakedTextures() const { return occlusionTextures || lightmaps; }
+    bool bakedTextures() const { return occlusionTextures || lightmaps || volumes; }
+    bool volumes = false;  ///< of PackOptions::occlusion: some material has a thickness
+    /** Of PackOptions::occlusion, where some surface lets light through: every instance's scale, the cube
+     * root of a unit cube's volume. */
+    std::vector<float> instanceScales;
     bool alphaMasks = false, alphaBlends = false;  ///< modes of materials in use
     bool solidTextures = false;                    ///< some base colour varies over space
     bool linearTextures = false;         ///< some 8-bit texture holds data, which is not sRGB-encoded
     bool normalLevels = false;           ///< some normal map asks for mip levels
     std::uint32_t materialFeatures = 0;  ///< passes/scene/material_layout.hpp; 0: all surfaces are Lambertian
-    bool roughFacets = false;            ///< some material in use has microfacets of a width
+    /** Whether light goes through some surface of a material in use. */
+    bool transmits() const;
+    bool roughFacets = false;  ///< some material in use has microfacets of a width
     bool tiltedLobes =
         false;  ///< some normal of vertices or of a map is that of a surface with more than mirrors
     bool doubleSidedEmission = false;

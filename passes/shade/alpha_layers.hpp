@@ -4,9 +4,11 @@
  * layer, nearest first, each pass leaving out what is not behind the layer before. This is depth peeling on
  * the rasterizer's keys, which tell equal depths apart by the triangle's id; exact for any number of layers
  * up to kMaxLayers, in memory that does not grow with them. (Everitt, Interactive Order-Independent
- * Transparency, 2001.)
+ * Transparency, 2001.) Where light goes through surfaces their order tells exactly what thin walls show, and
+ * pictures of what lies behind what volumes and rough surfaces do (RefractionPictures).
  */
 #include "passes/raster/raster_pipeline.hpp"
+#include "passes/shade/refraction.hpp"
 #include "passes/shade/shade.hpp"
 
 #include <heliograph/device.hpp>
@@ -31,6 +33,8 @@ public:
     struct Drawing {
         std::uint32_t layers = 0;
         std::uint32_t open = 0;                ///< pixels with more than kMaxLayers layers
+        std::uint32_t refracting = 0;          ///< most refracting layers of a pixel, of those left out
+        std::uint32_t pictures = 1;            ///< the visible one and those of what refracting layers show
         std::vector<RasterCounters> counters;  ///< of every layer
     };
     /** Draws all layers. `timings` is given those of each plan. */
@@ -49,6 +53,7 @@ public:
     std::string graphviz() const { return layer_.graphviz(); }
 
 private:
+    std::unique_ptr<RefractionPictures> refraction_;  ///< where light goes through surfaces
     DeviceBuffer color_, limit_, albedoDepth_, normal_, ids_;
     Plan begin_, layer_;
     Readback<std::uint32_t> open_;

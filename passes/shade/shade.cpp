@@ -327,12 +327,17 @@ std::pair<Kernel, SpecConstants> ShadePipeline::surfaceKernel(const RasterView& 
 }
 
 bool ShadePipeline::seesThrough() const {
-    return (scene_.info().materialFeatures & pack::kAlphaFeature) != 0;
+    return (scene_.info().materialFeatures & pack::kAlphaFeature) != 0 || transmits();
+}
+
+bool ShadePipeline::transmits() const {
+    return scene_.info().transmits() && shading_ == Shading::Material;
 }
 
 void ShadePipeline::declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,
                                  std::shared_ptr<const RasterView> view) {
-    const Common common = declareCommon(graph, view);
+    Common common = declareCommon(graph, view);
+    if (transmits()) common.model["TRANSMISSION"] = scattersThrough() ? "2" : "1";
     const std::uint32_t first = common.firstLight;
     const std::uint32_t count = std::min(kLightsPerPass, scene_.info().lightCount - first);
     Pass pass = graph.compute("shade.layer", common.kernel(shaders::shadeLayer), {.spec = common.firstSpec});
@@ -346,9 +351,14 @@ void ShadePipeline::declareLayer(Graph& graph, Buffer visibility, const LayerTar
                    {"uIds", target.ids},
                    {"uLimit", target.limit},
                    {"uOpen", target.open}})
-        .record([view, first, count](Commands& c) {
-            c.push(makeRasterPush(*view, 0, first, count)).dispatchOver(view->width, view->height);
+        .record([view, first, count, leftOut = target.leftOut](Commands& c) {
+            c.push(makeRasterPush(*view, leftOut ? *leftOut : 0, first, count))
+                .dispatchOver(view->width, view->height);
         });
+    if (transmits())
+        pass.modifies({{"uPassed", target.passed}})
+            .reads(target.behind)
+            .reads(scene_.bindings(graph, {"uInstanceScales"}));
 }
 
 void ShadePipeline::declareMask(Graph& graph, Buffer visibility, const MaskTarget& target,
@@ -396,6 +406,9 @@ std::vector<std::pair<std::string, std::string>> ShadePipeline::skipped() const 
         result.emplace_back("indirect light",
                             "the raster pipeline shades direct light; the path pipeline has all");
     }
+    if (info.transmits() && !transmits())
+        result.emplace_back("transmission",
+                            "Blinn and Phong's model has no light that goes through surfaces");
     if (info.occlusionTextures && cornersShaded() > 0)
         result.emplace_back("occlusion textures", "flat and Gouraud shading find all light at corners");
     for (const auto& skipped : info.rasterSkipped) result.push_back(skipped);

@@ -45,7 +45,12 @@ struct LayerTarget {
     Buffer color;                     ///< vec4: radiance so far, what of the light behind is stopped
     Buffer limit;                     ///< 64 bits: the next layer's keys are below; 0 where the pixel is done
     Buffer albedoDepth, normal, ids;  ///< as ShadeOutput's, of the first layer that stops any light
-    Buffer open;                      ///< uint: pixels that are not done, added to
+    Buffer open;  ///< uint: pixels that are not done, added to; where light goes through surfaces, behind it
+                  ///< uint: the most refracting layers of a pixel
+    /** Where light goes through surfaces (ShadePipeline::transmits): passes/shade/refraction.hpp. */
+    Buffer passed;                ///< vec4: shares of light that pass, 1 + refracting layers so far
+    std::vector<Binding> behind;  ///< the picture of what refracting layers show
+    std::shared_ptr<const std::uint32_t> leftOut;  ///< nearest refracting layers of a pixel, left out
 };
 
 /** What layers leave where masks alone are looked at, per pixel. */
@@ -88,6 +93,12 @@ public:
 
     /** Whether some surfaces let through part of what is behind: only declareLayer shows it. */
     bool seesThrough() const;
+    /** Whether light goes through some of their material (not its alpha). */
+    bool transmits() const;
+    /** Whether some such surface may deflect it: what is behind is then looked up in a picture. */
+    bool refracts() const { return transmits() && (scene_.info().roughFacets || scene_.info().volumes); }
+    /** Whether some such surface may be rough: levels of that picture are then read. */
+    bool scattersThrough() const { return transmits() && scene_.info().roughFacets; }
     /** Shades the layer of a peeled visibility buffer that is seen through those before, and adds it to the
      * picture: see passes/shade/alpha_layers.hpp. */
     void declareLayer(Graph& graph, Buffer visibility, const LayerTarget& target,

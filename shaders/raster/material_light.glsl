@@ -75,6 +75,10 @@ vec3 mirrorShare(SurfaceBsdf bsdf) {
         share = mix(f.dielectric, f.metal, bsdf.gltf.metallic);
     }
     if (HAS_MODELS && bsdf.model == MODEL_MIRROR + 1u) share = bsdf.other.color;
+    if (HAS_MODEL(MODEL_DIELECTRIC) && bsdf.model == MODEL_DIELECTRIC + 1u)
+        share = vec3(fresnelDielectric(bsdf.wo.z, bsdf.other.eta));
+    if (HAS_MODEL(MODEL_THIN_DIELECTRIC) && bsdf.model == MODEL_THIN_DIELECTRIC + 1u)
+        share = vec3(paneReflectance(fresnelDielectric(bsdf.wo.z, bsdf.other.n.x)));
     if (HAS_MODEL(MODEL_CONDUCTOR) && bsdf.model == MODEL_CONDUCTOR + 1u)
         share = bsdf.other.color * fresnelConductor(bsdf.wo.z, bsdf.other.n, bsdf.other.k);
     return bsdf.unlit ? vec3(0.0) : share;

@@ -10,10 +10,11 @@
  * 10: clearcoat, its roughness, scale of its normal map, anisotropy
  * 11: sheen colour, sheen roughness
  * 12: cosine and sine of the anisotropy's rotation, iridescence, index of its film
- * 13: least and largest thickness of the film (nm), of occlusion's texture, 0
+ * 13: least and largest thickness of the film (nm), of occlusion's texture, thickness of the volume
  * 14..39: textures, two texels each as for the base colour: metallic and roughness, normal, specular, specular
  *   colour, transmission, clearcoat, clearcoat roughness, clearcoat normal, sheen colour, sheen roughness,
  *   anisotropy, iridescence, iridescence thickness
+ * 40, 41: in the raster pipeline, texture of the volume's thickness; or
  * 40: Scattering: n, roughness; 41: k, exponent; 42: alpha, first texel of its table of losses, 0
  * 43, 44: texture of heights
  *

@@ -149,6 +149,7 @@ TEST(RasterFeaturesOff, NoPassesAndNoWorkForWhatIsNotThere) {
     for (const auto& [name, value] : plain.counters) {
         EXPECT_NE(name, "corners_shaded");
         EXPECT_NE(name, "alpha_layers");
+        EXPECT_NE(name, "refraction_pictures");
     }
     struct Case {
         const char* pass;
@@ -162,6 +163,10 @@ TEST(RasterFeaturesOff, NoPassesAndNoWorkForWhatIsNotThere) {
     cases.push_back({"temporal.resolve", draw(scene, "taa", Shading::Material), nullptr});
     cases.push_back({"shade.corners", draw(scene, "none", Shading::Gouraud), "corners_shaded"});
     cases.push_back({"shade.layer", draw(roomWith("alpha"), "none", Shading::Material), "alpha_layers"});
+    // Layers without any light through surfaces have no pictures of what refracts.
+    for (const std::string& name : passes(cases.back().with)) EXPECT_EQ(name.find("refraction"), name.npos);
+    cases.push_back({"refraction.passAll", draw(roomWith("transmission"), "none", Shading::Material),
+                     "refraction_pictures"});
     for (const Case& c : cases) {
         SCOPED_TRACE(c.pass);
         EXPECT_TRUE(passes(c.with).contains(c.pass));
