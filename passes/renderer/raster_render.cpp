@@ -56,7 +56,8 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
     : size_(options.size),
       cull_(options.cullBackFaces),
       auxiliary_(options.auxiliary),
-      kind_(options.antialiasing.kind),
+      asked_(options.antialiasing.kind),
+      kind_(asked_),
       sampleCount_(options.antialiasing.positions.size()),
       view_(std::make_shared<RasterView>(view)),
       depth_(options.depthFormat),
@@ -67,6 +68,7 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
       shading_(options.shading),
       shade_(device, scene.deviceScene, scene.bounds, options.shadows, options.textureFilter,
              options.lightSamples, options.shading) {
+    if (kind_ == Kind::Multisampling && (shade_.blends() || shade_.transmits())) kind_ = Kind::Supersampling;
     makeMips(device);
     makeShadows(device);
     if (step.frame == 0) makeClusters(device, scene.deviceScene);
@@ -93,7 +95,7 @@ RasterSession::RasterSession(Device& device, PreparedScene& scene, const RasterV
 bool RasterSession::fits(const RasterView& view, const RenderOptions& options,
                          const TemporalStep& step) const {
     return options.size == size_ && step.history == history_ && options.cullBackFaces == cull_ &&
-           options.auxiliary == auxiliary_ && options.antialiasing.kind == kind_ &&
+           options.auxiliary == auxiliary_ && options.antialiasing.kind == asked_ &&
            options.antialiasing.positions.size() == sampleCount_ && options.textureFilter == filter_ &&
            options.lightSamples == lightSamples_ && options.depthFormat == depth_ &&
            options.shading == shading_ && options.shadows.kind == shadows_.kind &&
@@ -339,12 +341,9 @@ void RasterSession::render(const RasterView& view, const std::optional<ThinLens>
         result.warnings.push_back(
             fmt::format("{} texels of shadow maps have more than {} masked surfaces one behind another",
                         openTexels_, AlphaLayers::kMaxLayers));
-    if (shade_.transmits() && !layers_)
-        result.skipped.emplace_back(
-            "transmission", "multisampling draws glass as opaque; supersampling shows what is behind it");
-    if (shade_.blends() && !layers_)
-        result.skipped.emplace_back(
-            "blending", "multisampling draws blended surfaces as opaque; supersampling shows them");
+    if (asked_ == Kind::Multisampling && kind_ == Kind::Supersampling)
+        result.skipped.emplace_back("multisampling",
+                                    "where surfaces let light through every sample is shaded by itself");
     for (const auto& skipped : shade_.skipped()) result.skipped.push_back(skipped);
     noteUnused(job.options, result);
     if (lens && kind_ != Kind::Supersampling) {

@@ -77,7 +77,7 @@ private:
 
     std::array<std::uint32_t, 2> size_;
     bool cull_, auxiliary_;
-    Kind kind_;
+    Kind asked_, kind_;  ///< multisampling is supersampling where surfaces let light through
     std::size_t sampleCount_;
     std::shared_ptr<RasterView> view_;
     DepthFormat depth_;

@@ -195,10 +195,13 @@ TEST(ShadeAlpha, SupersamplesHaveLayersOfTheirOwn) {
     const glm::dvec3 expected = blended(list, 0);
     for (std::uint32_t c = 0; c < 3; ++c)
         EXPECT_NEAR(double(result.image.at(7, 9, c)), expected[int(c)], 1e-6);
-    // Multisampling shades a triangle once a pixel and cannot: it says so.
+    // Multisampling has the same, by shading its samples one by one: it says so.
     options.antialiasing = antialiasing("msaa4");
-    const RenderResult opaque = renderer().render(sheets(list), options);
-    EXPECT_TRUE(std::ranges::any_of(opaque.skipped, [](const auto& s) { return s.first == "blending"; }));
+    const RenderResult multi = renderer().render(sheets(list), options);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(double(multi.image.at(7, 9, c)), expected[int(c)], 1e-6);
+    EXPECT_EQ(counter(multi, "pixels_shaded"), counter(result, "pixels_shaded"));
+    EXPECT_TRUE(std::ranges::any_of(multi.skipped, [](const auto& s) { return s.first == "multisampling"; }));
 }
 
 /** Alpha of a mask over its sheet: smooth, so that a pixel off by its width changes little. */

@@ -416,6 +416,54 @@ TEST(TextureFilter, ErrorAgainstTheFootprintsIntegral) {
         }
 }
 
+/** Row X6: what a wave is between levels whose boxes weaken it by the product of their cosines, with no step
+ * where one pair of levels ends and the next begins. */
+TEST(TextureFilter, TrilinearGoesFromLevelToLevelWithoutAStep) {
+    const int size = 256, waves = 11, levels = 9;
+    const double f = double(waves) / size;
+    const TestTexture texture{std::uint32_t(size), std::uint32_t(size),
+                              [&](int x, int) { return 0.5 + 0.5 * std::cos(2 * kPi * f * (x + 0.5)); }};
+    const auto levelAt = [&](int level, double x) {
+        double amplitude = 0.5;
+        for (int k = 0; k < level; ++k) amplitude *= std::cos(kPi * f * std::exp2(k));
+        const double width = std::exp2(level), p = x / width - 0.5, i = std::floor(p), s = p - i;
+        const auto texel = [&](double at) { return amplitude * std::cos(2 * kPi * f * (at + 0.5) * width); };
+        return 0.5 + texel(i) * (1 - s) + texel(i + 1) * s;
+    };
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    std::vector<Query> queries;
+    std::vector<double> exact;
+    const auto ask = [&](float u, double level) {
+        Query q;
+        q.uv = {u, 0.3f};
+        q.dx = {float(std::exp2(level) / size), 0.0f};
+        queries.push_back(q);
+        const double real = std::clamp(std::log2(double(q.dx.x) * size), 0.0, double(levels - 1));
+        const int fine = std::min(int(real), levels - 2);
+        const double x = double(u) * size, t = real - fine;
+        exact.push_back(levelAt(fine, x) * (1 - t) + levelAt(fine + 1, x) * t);
+    };
+    // Pairs 4e-6 of a level apart, across every level where one could step.
+    constexpr int pairs = 512;
+    for (int i = 0; i < pairs; ++i) {
+        const float u = uniform(random);
+        for (const double side : {-2e-6, 2e-6}) ask(u, i % levels + side);
+    }
+    for (int i = 0; i < 2048; ++i) ask(uniform(random), uniform(random) * 9.5 - 0.5);
+    const std::vector<glm::vec4> got = sample(texture, TextureFilter::Trilinear, queries).values;
+    double step = 0, off = 0;
+    for (int i = 0; i < pairs; ++i)
+        step = std::max(step,
+                        std::abs(double(got[2 * std::size_t(i)].r) - double(got[2 * std::size_t(i) + 1].r)));
+    for (std::size_t i = 0; i < queries.size(); ++i)
+        off = std::max(off, std::abs(double(got[i].r) - exact[i]));
+    std::printf("             trilinear: largest step between levels %.1e, off the boxes' product %.1e\n",
+                step, off);
+    EXPECT_LT(step, 1e-5);
+    EXPECT_LT(off, 1e-5);
+}
+
 TEST(TextureFilter, EwaFollowsTheGaussiansLaw) {
     // A wave of f periods a texel is weakened to exp(-2 pi^2 f^T S f), S = J J^T/12 + 1/6 of a texel squared.
     const int size = 256;
