@@ -38,6 +38,8 @@ struct WideNode {
     std::uint32_t firstTriangle = 0;  ///< in Bvh::order
     std::uint32_t innerIndex = 0;  ///< among the wide nodes, of its first inner child; more follow in order
     std::uint32_t children = 0;
+    std::uint32_t innerChildren = 0;
+    std::uint32_t leafTriangles = 0;            ///< of the other children
     std::array<std::uint32_t, 8> child{};       ///< nodes of the binary tree
     std::array<std::uint32_t, 8> childFirst{};  ///< their first triangles
 };
@@ -64,30 +66,41 @@ void gather(const bvh::BinaryTree& tree, std::uint32_t index, std::uint32_t firs
 /** Gives every child the free slot whose octant it lies towards most, best pair first. */
 std::array<std::uint8_t, 8> slotsOf(const Bounds& parent, std::span<const Bounds> children) {
     std::array<std::array<float, 8>, 8> towards;
+    std::array<std::uint8_t, 8> slots{};
     // Halved first: sums near the largest float stay finite.
     const glm::vec3 middle = 0.5f * parent.lower + 0.5f * parent.upper;
     for (std::size_t k = 0; k < children.size(); ++k) {
         const glm::vec3 d = 0.25f * (0.5f * children[k].lower + 0.5f * children[k].upper - middle);
-        for (std::size_t s = 0; s < 8; ++s)
-            towards[k][s] =
-                ((s & 1) != 0 ? d.x : -d.x) + ((s & 2) != 0 ? d.y : -d.y) + ((s & 4) != 0 ? d.z : -d.z);
+        const std::array<float, 4> xy = {-d.x - d.y, d.x - d.y, -d.x + d.y, d.x + d.y};
+        for (std::size_t s = 0; s < 4; ++s) {
+            towards[k][s] = xy[s] - d.z;
+            towards[k][s + 4] = xy[s] + d.z;
+        }
+        slots[k] = std::uint8_t((d.x > 0 ? 1 : 0) | (d.y > 0 ? 2 : 0) | (d.z > 0 ? 4 : 0));
     }
-    std::array<std::uint8_t, 8> slots{};
-    std::uint32_t freeSlots = 0xff, open = (1u << children.size()) - 1u;
-    while (open != 0) {
+    // `slots` are the best free ones; looked for again only where another child has taken one.
+    std::uint32_t freeSlots = 0xff;
+    const auto findBest = [&](std::size_t k) {
         float best = -std::numeric_limits<float>::infinity();
-        std::size_t bestChild = 0, bestSlot = 0;
-        for (std::uint32_t c = open; c != 0; c &= c - 1)
-            for (std::uint32_t f = freeSlots; f != 0; f &= f - 1) {
-                const std::size_t k = std::size_t(std::countr_zero(c)), s = std::size_t(std::countr_zero(f));
-                if (towards[k][s] <= best) continue;
-                best = towards[k][s];
-                bestChild = k;
-                bestSlot = s;
-            }
-        slots[bestChild] = std::uint8_t(bestSlot);
-        open &= ~(1u << bestChild);
-        freeSlots &= ~(1u << bestSlot);
+        for (std::uint32_t f = freeSlots; f != 0; f &= f - 1) {
+            const std::size_t s = std::size_t(std::countr_zero(f));
+            if (towards[k][s] <= best) continue;
+            best = towards[k][s];
+            slots[k] = std::uint8_t(s);
+        }
+    };
+    for (std::uint32_t open = (1u << children.size()) - 1u; open != 0;) {
+        std::size_t best = std::size_t(std::countr_zero(open));
+        for (std::uint32_t c = open & (open - 1); c != 0; c &= c - 1) {
+            const std::size_t k = std::size_t(std::countr_zero(c));
+            if (towards[k][slots[k]] > towards[best][slots[best]]) best = k;
+        }
+        open &= ~(1u << best);
+        freeSlots &= ~(1u << slots[best]);
+        for (std::uint32_t c = open; c != 0; c &= c - 1) {
+            const std::size_t k = std::size_t(std::countr_zero(c));
+            if (slots[k] == slots[best]) findBest(k);
+        }
     }
     return slots;
 }
@@ -123,8 +136,12 @@ void quantise(const Bounds& child, std::size_t slot, BvhNode& node) {
         const double origin = double(node.origin[axis]);
         const double step = powerOfTwo(node.exponent[axis]), perUnit = 1.0 / step;
         const double lower = double(child.lower[int(axis)]), upper = double(child.upper[int(axis)]);
-        double low = std::clamp(std::floor((lower - origin) * perUnit), 0.0, 255.0);
-        double high = std::clamp(std::ceil((upper - origin) * perUnit), 0.0, 255.0);
+        // By conversion, not std::floor(): a call each where the processor is not known to have more than
+        // SSE2.
+        double low = double(int(std::clamp((lower - origin) * perUnit, 0.0, 255.0)));
+        const double above = std::clamp((upper - origin) * perUnit, 0.0, 255.0);
+        double high = double(int(above));
+        if (high < above) high += 1.0;
         while (low > 0.0 && origin + low * step > lower) low -= 1.0;
         while (high < 255.0 && origin + high * step < upper) high += 1.0;
         assert(origin + low * step <= lower && origin + high * step >= upper);
@@ -143,24 +160,35 @@ public:
             const std::size_t end = wide_.size();
             forRange(begin, end, [&](std::size_t w) {
                 WideNode& wide = wide_[w];
-                if (tree_.isLeaf(wide.binary))
-                    gather(tree_, wide.binary, wide.first, 1, wide);
-                else
-                    gather(tree_, wide.binary, wide.first, 8, wide);
-            });
-            for (std::size_t w = begin; w < end; ++w) {
-                wide_[w].firstTriangle = triangles;
-                wide_[w].innerIndex = std::uint32_t(wide_.size());
-                wide_[w].firstChild = places;
-                const WideNode wide = wide_[w];  // the vector grows
+                gather(tree_, wide.binary, wide.first, tree_.isLeaf(wide.binary) ? 1 : 8, wide);
                 for (std::uint32_t k = 0; k < wide.children; ++k) {
                     if (tree_.isLeaf(wide.child[k]))
-                        triangles += tree_.node(wide.child[k]).count;
+                        wide.leafTriangles += tree_.node(wide.child[k]).count;
                     else
-                        wide_.push_back({.binary = wide.child[k], .first = wide.childFirst[k]});
+                        ++wide.innerChildren;
                 }
-                if (wide_.size() > wide.innerIndex) places += 8;
+            });
+            std::uint32_t next = std::uint32_t(end);
+            for (std::size_t w = begin; w < end; ++w) {
+                WideNode& wide = wide_[w];
+                wide.firstTriangle = triangles;
+                wide.innerIndex = next;
+                wide.firstChild = places;
+                triangles += wide.leafTriangles;
+                next += wide.innerChildren;
+                if (wide.innerChildren > 0) places += 8;
             }
+            wide_.resize(next);
+            forRange(begin, end, [&](std::size_t w) {
+                const WideNode& wide = wide_[w];
+                std::uint32_t inner = wide.innerIndex;
+                for (std::uint32_t k = 0; k < wide.children; ++k) {
+                    if (tree_.isLeaf(wide.child[k])) continue;
+                    wide_[inner].binary = wide.child[k];
+                    wide_[inner++].first = wide.childFirst[k];
+                }
+            });
+            levels_.push_back(end);
             begin = end;
             ++depth_;
         }
@@ -173,18 +201,20 @@ public:
         result.order.resize(tree_.node(0).count);
         result.depth = depth_;
         result.usedNodes = std::uint32_t(wide_.size());
-        std::vector<std::array<std::uint8_t, 8>> slots(wide_.size());
-        forRange(0, wide_.size(), [&](std::size_t w) {
-            const WideNode& wide = wide_[w];
-            std::array<Bounds, 8> boxes;
-            for (std::uint32_t k = 0; k < wide.children; ++k) boxes[k] = boundsOf(tree_.node(wide.child[k]));
-            slots[w] = slotsOf(boundsOf(tree_.node(wide.binary)), std::span(boxes).first(wide.children));
-            std::uint32_t inner = wide.innerIndex;
-            for (std::uint32_t k = 0; k < wide.children; ++k)
-                if (!tree_.isLeaf(wide.child[k])) wide_[inner++].place = wide.firstChild + slots[w][k];
-        });
         std::vector<double> costs(wide_.size());
-        forRange(0, wide_.size(), [&](std::size_t w) { costs[w] = writeNode(wide_[w], slots[w], result); });
+        for (std::size_t level = 0; level + 1 < levels_.size(); ++level)  // parents place their children
+            forRange(levels_[level], levels_[level + 1], [&](std::size_t w) {
+                const WideNode& wide = wide_[w];
+                std::array<Bounds, 8> boxes;
+                for (std::uint32_t k = 0; k < wide.children; ++k)
+                    boxes[k] = boundsOf(tree_.node(wide.child[k]));
+                const auto slots =
+                    slotsOf(boundsOf(tree_.node(wide.binary)), std::span(boxes).first(wide.children));
+                std::uint32_t inner = wide.innerIndex;
+                for (std::uint32_t k = 0; k < wide.children; ++k)
+                    if (!tree_.isLeaf(wide.child[k])) wide_[inner++].place = wide.firstChild + slots[k];
+                costs[w] = writeNode(wide, slots, result);
+            });
         const double rootArea = boundsOf(tree_.node(0)).halfArea();
         // In order: the same sum however many threads there are.
         if (rootArea > 0) result.cost = std::accumulate(costs.begin(), costs.end(), 0.0) / rootArea;
@@ -236,6 +266,7 @@ private:
     const bvh::BinaryTree& tree_;
     BvhOptions options_;
     std::vector<WideNode> wide_;
+    std::vector<std::size_t> levels_{0};  ///< where each begins in `wide_`, and the end
     std::uint32_t places_ = 0, depth_ = 0;
 };
 

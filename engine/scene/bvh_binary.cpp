@@ -139,21 +139,30 @@ BinaryTree::BinaryTree(std::span<const glm::vec3> positions, const BvhOptions& o
     references_.resize(n + room);
     nodes_ = std::make_unique_for_overwrite<BinaryNode[]>(references_.size() * 2);
     cuts_ = std::make_unique_for_overwrite<Cuts[]>(references_.size() * 2);
-    const auto fill = [&](const tbb::blocked_range<std::uint32_t>& range) {
+    using Extents = std::array<Box, 2>;  // of the boxes and of their centres
+    const auto fill = [&](const tbb::blocked_range<std::uint32_t>& range, Extents sum) {
         for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
             const glm::vec3* p = &positions[std::size_t(i) * 3];
             const glm::vec3 low = glm::min(glm::min(p[0], p[1]), p[2]),
                             high = glm::max(glm::max(p[0], p[1]), p[2]);
             references_[i].box = {Vec4{low.x, low.y, low.z, std::bit_cast<float>(i + kIndexBias)},
                                   Vec4{high.x, high.y, high.z, 0}};
+            const Vec4 centre = centreOf(references_[i].box);
+            sum[0].grow(references_[i].box);
+            sum[1].grow({centre, centre});
         }
+        return sum;
     };
     const tbb::blocked_range<std::uint32_t> all(0, n, kTaskTriangles);
-    if (options_.parallel)
-        tbb::parallel_for(all, fill);
-    else
-        fill(all);
-    Range range = measured(0, n);
+    const Extents none = {Box::empty(), Box::empty()};
+    const Extents extents = options_.parallel ? tbb::parallel_reduce(all, none, fill,
+                                                                     [](Extents a, const Extents& b) {
+                                                                         a[0].grow(b[0]);
+                                                                         a[1].grow(b[1]);
+                                                                         return a;
+                                                                     })
+                                              : fill(all, none);
+    Range range{0, n, extents[0], extents[1]};
     range.room = room;
     leastOverlap_ = kOverlap * range.box.size(0);
     const Vec4 extent = range.box.upper * 0.5f - range.box.lower * 0.5f;
@@ -179,7 +188,13 @@ BinaryTree::Split BinaryTree::halves(const Range& range) const {
 /** All splits between neighbours along an axis; the cheapest is made. */
 BinaryTree::Split BinaryTree::partitionFew(const Range& range) {
     const std::uint32_t n = range.count;
-    if (n == 2) return halves(range);
+    const auto part = [&](std::uint32_t first,
+                          std::uint32_t count) {  // as few again, whose centres nothing asks for
+        Range half{first, count, Box::empty(), Box::empty()};
+        for (std::uint32_t i = first; i < first + count; ++i) half.box.grow(references_[i].box);
+        return half;
+    };
+    if (n == 2) return {part(range.first, 1), part(range.first + 1, 1)};
     std::array<Reference, kFew> references;
     std::array<Vec4, kFew> centres;
     std::copy_n(&references_[range.first], n, references.begin());
@@ -209,7 +224,7 @@ BinaryTree::Split BinaryTree::partitionFew(const Range& range) {
         }
     }
     for (std::uint32_t i = 0; i < n; ++i) references_[range.first + i] = references[best[i]];
-    return {measured(range.first, bestLeft), measured(range.first + bestLeft, n - bestLeft)};
+    return {part(range.first, bestLeft), part(range.first + bestLeft, n - bestLeft)};
 }
 
 BinaryTree::Split BinaryTree::partition(const Range& range, int depth) {
@@ -390,9 +405,13 @@ BinaryTree::Costs BinaryTree::build(std::uint32_t index, const Range& range, int
     }
     node.count = nodes_[index + 1].count + nodes_[node.right].count;
     std::array<double, 9> shared;  // cost as exactly two or more boxes, at most j
-    for (std::size_t j = 2; j <= 8; ++j) {
+    // More boxes than references serve nothing, nor does a half's share beyond its own.
+    const std::size_t leftMost = nodes_[index + 1].count, rightMost = nodes_[node.right].count;
+    const std::size_t most = std::min<std::size_t>(8, leftMost + rightMost);
+    for (std::size_t j = 2; j <= most; ++j) {
         shared[j] = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 1; k < j; ++k) {
+        const std::size_t last = std::min(leftMost, j - 1);
+        for (std::size_t k = j > rightMost ? j - rightMost : 1; k <= last; ++k) {
             const double cost = left[k] + right[j - k];
             if (cost < shared[j]) {
                 shared[j] = cost;
@@ -400,6 +419,8 @@ BinaryTree::Costs BinaryTree::build(std::uint32_t index, const Range& range, int
             }
         }
     }
+    for (std::size_t j = most + 1; j <= 8; ++j) shared[j] = shared[most];
+    cuts[8] = cuts[most];
     const double asNode = shared[8] + area;
     const double asLeaf = node.count <= std::uint32_t(Bvh::kMaxLeafTriangles)
                               ? area * node.count * options_.triangleCost
