@@ -11,8 +11,8 @@ std::vector<glm::uvec4> pictureHeader(const RasterView& view, bool rough) {
     return {{0u, view.width, view.height, 2u | 2u << 2 | 1u << 5 | 1u << 6}};
 }
 
-std::uint64_t pixels(const RasterView& view) {
-    return std::uint64_t(view.width) * view.height;
+DeviceBuffer perPixelVector(Device& device, const char* name, const RasterView& view) {
+    return {device, name, std::uint64_t(view.width) * view.height * 16};
 }
 
 }  // namespace
@@ -21,9 +21,9 @@ RefractionPictures::RefractionPictures(Device& device, const RasterView& view, b
     : refracts_(refracts),
       header_(pictureHeader(view, rough)),
       mips_(device, header_),
-      passed_(device, "refraction.passed", pixels(view) * 16),
-      behind_(device, "refraction.behind", pixels(view) * 16),
-      behindDepth_(device, "refraction.behindDepth", pixels(view) * 16),
+      passed_(perPixelVector(device, "refraction.passed", view)),
+      behind_(perPixelVector(device, "refraction.behind", view)),
+      behindDepth_(perPixelVector(device, "refraction.behindDepth", view)),
       headers_(makeBuffer(device, "refraction.texture",
                           rough ? header_ : std::vector<glm::uvec4>(1, glm::uvec4(0u)))),
       none_(makeBuffer(device, "refraction.none", std::vector<std::uint32_t>(4))) {}
