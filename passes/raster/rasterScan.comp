@@ -100,7 +100,7 @@ void main() {
     if (lane == 0) {
         state.tileCount = listed;
         uint groups = (listed + GROUP_TILES - 1u) / GROUP_TILES;
-        bool fresh = MAY_START_FRESH && state.smallCount == 0u;
+        bool fresh = MAY_START_FRESH && state.smallPixels == 0u;
         state.freshGroups[0] = state.tileGroups[0] = min(groups, TILE_ROW);
         state.freshGroups[1] = state.tileGroups[1] = (groups + TILE_ROW - 1u) / TILE_ROW;
         state.freshGroups[2] = fresh ? 1u : 0u;

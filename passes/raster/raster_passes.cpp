@@ -105,10 +105,11 @@ void RasterPasses::drawAll() {
     const bool gathers =
         options_.gather.value_or(triangles_.count > std::uint64_t(view_->width) * view_->height);
     const Kernel& kernel = gathers ? shaders::rasterSetupTiny : shaders::rasterSetup;
-    // Where triangles are few for the pixels, most are large.
+    // Triangles that are few for the pixels are most often large, and tiles need not read where nothing has
+    // been drawn before them.
     ComputeOptions options = projection();
-    if (!gathers && isNarrow())
-        options.spec["LEAVES_FEW"] = triangles_.count * 32ull < std::uint64_t(view_->width) * view_->height;
+    options.spec["DIRECT"] = options_.direct.value_or(
+        !isNarrow() || triangles_.count * 64ull >= std::uint64_t(view_->width) * view_->height);
     for (std::uint32_t first = 0; first < triangles_.count; first += batch_) {
         const std::uint32_t count = std::min(batch_, triangles_.count - first);
         drawBatch(first == 0, {}, [&] {

@@ -42,6 +42,9 @@ struct RasterOptions {
      * cover a pixel. None: where they outnumber the pixels. Only narrow subgroups do. Results do not depend
      * on it. */
     std::optional<bool> gather = {};
+    /** Whether small triangles are drawn as they are set up, rather than through the tiles as large ones are.
+     * None: but where they are few for the pixels. Results do not depend on it. */
+    std::optional<bool> direct = {};
     /** Depth of the keys. Perspective views of the conventional formats are made by conventionalDepth(). */
     DepthFormat depth = DepthFormat::Reversed;
 };

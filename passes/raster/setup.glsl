@@ -1,5 +1,5 @@
-// Set-up: triangles are transformed and culled; small ones are drawn at once by 64-bit atomics, others are listed for the
-// tiles or for clipping.
+// Set-up: triangles are transformed and culled; small ones are drawn at once by 64-bit atomics, or dropped where they cover
+// no pixel, others are listed for the tiles or for clipping.
 #ifndef PASSES_RASTER_SETUP_GLSL
 #define PASSES_RASTER_SETUP_GLSL
 #include "shaders/raster/view.glsl"
@@ -9,7 +9,7 @@
 
 /// Few where subgroups are narrow: what a subgroup does once, loading the view above all, then serves more triangles.
 layout(constant_id = 127) const uint LANES = 64u;
-layout(constant_id = 121) const bool LEAVES_FEW = false;  ///< small triangles may be left to the tiles
+layout(constant_id = 121) const bool DIRECT = true;  ///< else small triangles are left to the tiles too
 layout(local_size_x = 64, local_size_x_id = 127) in;
 layout(set = 0, binding = 1, std430) buffer uVisibility { uint64_t visibility[]; };
 layout(set = 0, binding = 2, std430) buffer uState { RasterState state; };
@@ -79,21 +79,6 @@ struct Pending {
     int low, high;
     uint id;
 };
-
-#ifndef GATHER
-/// Whether an invocation's pixels are left to the tiles: drawn one by one they would keep seven neighbours waiting of which
-/// too few have any. Where that leaves no small triangle, tiles need not read what they write over.
-bool isLeft(uint pixels) {
-    uint drawing = uint(pixels != 0u), most = pixels;
-    drawing += subgroupShuffleXor(drawing, 1u);
-    most = max(most, subgroupShuffleXor(most, 1u));
-    drawing += subgroupShuffleXor(drawing, 2u);
-    most = max(most, subgroupShuffleXor(most, 2u));
-    drawing += subgroupShuffleXor(drawing, 4u);
-    most = max(most, subgroupShuffleXor(most, 4u));
-    return gl_SubgroupSize == 8u && pixels != 0u && most >= 8u * drawing;
-}
-#endif
 
 /// Sets up the triangle of turn k: its pixels where it is small, else none.
 Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
@@ -171,15 +156,13 @@ Pending setUp(uint k, uint lane, ivec2 size, inout Work work) {
     }
     uvec2 mask = unpackUint2x32(coverage);
     uint pixels = uint(bitCount(mask.x) + bitCount(mask.y));
-#ifndef GATHER
-    if (LEAVES_FEW) {
-        bool left = isLeft(pixels);
+    if (!DIRECT) {
+        bool left = pixels != 0u;
         work.tiledBits |= uint(left) << k;
         valid = valid && !left;
-        mask = left ? uvec2(0u) : mask;
-        pixels = left ? 0u : pixels;
+        mask = uvec2(0u);
+        pixels = 0u;
     }
-#endif
     work.small += uint(valid);
     work.covered += pixels;
     return Pending(mask, uint(max(bounds.x, 0)) | uint(max(bounds.y, 0)) << 16, unpackDouble2x32(plane.a),
@@ -222,7 +205,9 @@ void main() {
 #else
     [[dont_unroll]] for (uint k = 0u; k < PER_THREAD; ++k) {
         Pending own = setUp(k, lane, size, work);
-        for (; !isDrawn(own);) drawPixel(own, size);
+        if (DIRECT) {
+            for (; !isDrawn(own);) drawPixel(own, size);
+        }
     }
 #endif
 
@@ -255,9 +240,10 @@ void main() {
     } else if (lane <= 6u) {
         uint value = packed[(lane - 1u) / 3u] >> (10u * ((lane - 1u) % 3u)) & 1023u;
         atomicAdd(counters[COUNT_OUTSIDE + int(lane) - 1], uint64_t(value));
-        if (COUNT_OUTSIDE + int(lane) - 1 == COUNT_SMALL) atomicAdd(state.smallCount, value);
     } else if (lane <= 8u) {
-        atomicAdd(counters[COUNT_SMALL_VISITED + int(lane) - 7], uint64_t(packed[lane - 5u]));
+        uint pixels = packed[lane - 5u];
+        atomicAdd(counters[COUNT_SMALL_VISITED + int(lane) - 7], uint64_t(pixels));
+        if (lane == 8u) atomicAdd(state.smallPixels, pixels);
     }
 }
 

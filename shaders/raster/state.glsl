@@ -29,7 +29,7 @@ struct RasterState {
     uint moreGroups[3];  // for the others, most often none
     uint tileCount;      // tiles with entries, each x | y << 16
     uint freshGroups[3];  // in place of tileGroups where nothing has been drawn before
-    uint smallCount;      // triangles drawn directly
+    uint smallPixels;     // that triangles drawn directly cover
 };
 const int STATE_TILE_COUNT = 19;  // its place among the words
 const uint TILE_ROW = 32768u;     // workgroups of tiles in x: some devices have no more than 65,535

@@ -28,7 +28,7 @@ struct RasterResult {
 class RasterRunner {
 public:
     RasterRunner(std::uint32_t width, std::uint32_t height, std::uint32_t capacity,
-                 const RasterOptions& options = {}, const CompileOptions& compile = {},
+                 const RasterOptions& options = {.direct = true}, const CompileOptions& compile = {},
                  bool orthographic = false)
         : view_(std::make_shared<RasterView>()),
           capacity_(capacity),
