@@ -110,27 +110,48 @@ Scene lampInGlass(double scale, bool moves) {
     return b.scene;
 }
 
-/** Means of paths with tables and without, of scenes as small and as large as floats hold well. */
+/** The mean of paths with tables beside that of paths without. */
+void expectMeanOfUnguidedPaths(const Scene& scene, const std::string& what, std::uint32_t samples) {
+    PathTraceOptions o = guidedOptions(24);
+    const Traced guided = trace(scene, o, samples);
+    o.photonTargets = false;
+    o.seed = 7;
+    const Traced plain = trace(scene, o, 2 * samples);
+    EXPECT_GT(guided.guideTables, 4u) << what;
+    EXPECT_EQ(guided.rejected, 0u);
+    EXPECT_EQ(plain.guideTables, 0u);
+    const auto all = [](std::size_t) { return true; };
+    const Estimate a = estimate(guided, 0, all), b = estimate(plain, 0, all);
+    const double z = (a.mean - b.mean) / std::hypot(a.error, b.error);
+    fmt::print("{}: guided {:.5f} +- {:.5f} ({} samples), else {:.5f} +- {:.5f} ({} samples), z {:+.2f}\n",
+               what, a.mean, a.error, samples, b.mean, b.error, 2 * samples, z);
+    EXPECT_LT(std::abs(z), 4) << what;
+}
+
+/** Of scenes as small and as large as floats hold well. */
 TEST(Guiding, MeansAreThoseOfUnguidedPaths) {
-    for (const double scale : {1e-6, 1e6}) {
-        const Scene scene = lampInGlass(scale, false);
-        PathTraceOptions o = guidedOptions(24);
-        const Traced guided = trace(scene, o, 128);
-        o.photonTargets = false;
-        o.seed = 7;
-        const Traced plain = trace(scene, o, 256);
-        EXPECT_GT(guided.guideTables, 4u) << scale;
-        EXPECT_EQ(guided.rejected, 0u);
-        EXPECT_EQ(plain.guideTables, 0u);
-        const auto all = [](std::size_t) { return true; };
-        const Estimate a = estimate(guided, 0, all), b = estimate(plain, 0, all);
-        const double z = (a.mean - b.mean) / std::hypot(a.error, b.error);
-        fmt::print(
-            "scale {}: guided {:.5f} +- {:.5f} (128 samples), else {:.5f} +- {:.5f} (256 samples), z "
-            "{:+.2f}\n",
-            scale, a.mean, a.error, b.mean, b.error, z);
-        EXPECT_LT(std::abs(z), 4) << scale;
-    }
+    for (const double scale : {1e-6, 1e6})
+        expectMeanOfUnguidedPaths(lampInGlass(scale, false), fmt::format("scale {}", scale), 128);
+}
+
+/** Where guided surfaces mirror too: half of the light off some, that of coats, and glossy metal. */
+TEST(Guiding, SurfacesThatMirrorKeepTheirMeans) {
+    Scene scene = lampInGlass(1, false);
+    const Material wall = scene.materials.front();
+    Material half = wall, coated = wall, glossy = wall;
+    half.metallic = glossy.metallic = 0.6f;
+    half.baseColor = glossy.baseColor = glm::vec4(0.8f, 0.8f, 0.8f, 1);
+    half.roughness = 0;
+    glossy.roughness = 0.4f;
+    coated.clearcoat = 1;
+    coated.specular = 1;
+    coated.roughness = 0.5f;
+    scene.materials.insert(scene.materials.end(), {half, coated, glossy});
+    const int first = int(scene.materials.size()) - 3;
+    scene.meshes[2].primitives[0].material = first;  // floor
+    scene.meshes[4].primitives[0].material = first + 1;
+    scene.meshes[0].primitives[0].material = first + 2;
+    expectMeanOfUnguidedPaths(scene, "mirrors, coats and gloss", 64);
 }
 
 RenderOptions pictureOf(Guiding guiding) {
