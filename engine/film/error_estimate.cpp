@@ -15,7 +15,7 @@ constexpr double modelError = 0.01;  // of the estimate's logarithm, for edges a
 /** Of the logarithm of what the denominator's choice changes. */
 constexpr double denominatorDoubt = 0.02;
 /** See Truths: what rare samples say beyond is not believed. */
-constexpr double largestSkew = 4;
+constexpr double largestSkew = 8;
 constexpr double skewPriorPixels = 256;  // of the skew
 /** Of what pixels' own terms say of the sum's variance over what their neighbours' say, where a pixel is like
  * those around it: 1 for normal errors, a third of the kurtosis of the halves' difference. Measured: 0.8
@@ -55,17 +55,17 @@ struct Truth {
     }
 };
 
-/** One channel of a film, and the variance of its pixels. */
+/** One channel of a film, and the variance of its pixels' means, see varianceOfMean(). */
 class Channel {
 public:
-    Channel(const FilmImages& images, std::size_t channel, double gain)
-        : images_(images), channel_(channel), gain_(gain) {}
+    Channel(const FilmImages& images, std::size_t channel, const std::vector<float>& variance)
+        : images_(images), variance_(variance), channel_(channel) {}
 
     double value(std::size_t pixel) const { return images_.mean[4 * pixel + channel_]; }
     double difference(std::size_t pixel) const { return images_.difference[4 * pixel + channel_]; }
     double noise(std::size_t pixel) const {
         const double d = difference(pixel);
-        return finiteOr(gain_ * images_.variance[4 * pixel + channel_], d * d);
+        return finiteOr(double(variance_[4 * pixel + channel_]), d * d);
     }
 
     /** The pixel's value drawn towards the mean of those of its eight neighbours that it cannot be told from,
@@ -111,8 +111,8 @@ public:
 
 private:
     const FilmImages& images_;
+    const std::vector<float>& variance_;
     std::size_t channel_;
-    double gain_;
 };
 
 /** What a channel's pixels may be. */
@@ -223,10 +223,10 @@ void addVariance(const std::vector<Term>& pixels, const FilmImages& images, Term
     }
 }
 
-Terms halvesTerms(const FilmImages& images, double gain) {
-    const std::array<Channel, 3> channels = {Channel(images, 0, gain), Channel(images, 1, gain),
-                                             Channel(images, 2, gain)};
+Terms halvesTerms(const FilmImages& images) {
     const std::vector<float> variance = varianceOfMean(images);
+    const std::array<Channel, 3> channels = {Channel(images, 0, variance), Channel(images, 1, variance),
+                                             Channel(images, 2, variance)};
     const std::array<Truths, 3> truths = {Truths(channels[0], images), Truths(channels[1], images),
                                           Truths(channels[2], images)};
     std::vector<Term> pixels(std::size_t(images.width) * images.height);
@@ -294,13 +294,13 @@ double stratificationGain(const FilmImages& images) {
 }
 
 std::vector<float> relativeWeights(const FilmImages& images) {
-    const double gain = std::min(1.0, stratificationGain(images));
+    const std::vector<float> variance = varianceOfMean(images);
     std::vector<float> result(images.mean.size());
     for (std::uint32_t y = 0; y < images.height; ++y) {
         for (std::uint32_t x = 0; x < images.width; ++x) {
             const std::size_t pixel = std::size_t(y) * images.width + x;
             for (std::size_t c = 0; c < 3; ++c) {
-                const double denominator = Channel(images, c, gain).truth(x, y).denominator(1);
+                const double denominator = Channel(images, c, variance).truth(x, y).denominator(1);
                 result[4 * pixel + c] = float(finiteOr(1 / denominator, 0));
             }
         }
@@ -320,7 +320,7 @@ std::vector<float> relativeStandardErrors(const FilmImages& images) {
 ErrorEstimate estimateError(const FilmImages& images) {
     [[maybe_unused]] const std::size_t size = std::size_t(images.width) * images.height * 4;
     assert(images.mean.size() == size && images.variance.size() == size && images.difference.size() == size);
-    const Terms terms = halvesTerms(images, std::min(1.0, stratificationGain(images)));
+    const Terms terms = halvesTerms(images);
     if (terms.count == 0) return fromNeighbours(images);
     ErrorEstimate result;
     const double n = double(terms.count);

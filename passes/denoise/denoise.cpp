@@ -15,11 +15,23 @@ namespace helio {
 namespace {
 
 constexpr std::int32_t levels = 5;  // the last reaches 32 pixels far
+/** Of the measured error: what the measure may be off beyond its spread (bench_error table). */
+constexpr double modelDoubt = 0.05;
+/** Of the measured error: how far its interval may reach and be reliable. */
+constexpr double farthestBound = 0.4;
 
 struct FilterPush {
     std::array<std::int32_t, 2> size;
     std::int32_t step;
 };
+
+/** The variance of the mean of `count` independent samples, from what each half of them says within itself.
+ * It is taken from that of all samples by what the halves' difference d holds of it. The filter's width must
+ * not go by d: where d happens to be large, a wider filter would bring the halves together, and their
+ * difference would call it better than it is. */
+float varianceWithinHalves(float variance, float d, float count) {
+    return count > 2 ? std::max(0.0f, (variance * (count - 1) - d * d) / (count - 2)) : variance;
+}
 
 /** The halves' means, and the variance of each as a mean of the channels. */
 std::array<std::vector<glm::vec4>, 2> halves(const FilmImages& film) {
@@ -28,7 +40,12 @@ std::array<std::vector<glm::vec4>, 2> halves(const FilmImages& film) {
     for (std::size_t i = 0; i < film.mean.size(); i += 4) {
         const glm::vec3 mean(film.mean[i], film.mean[i + 1], film.mean[i + 2]);
         const glm::vec3 d(film.difference[i], film.difference[i + 1], film.difference[i + 2]);
-        const float sum = 2 * (variance[i] + variance[i + 1] + variance[i + 2]) / 3;
+        float sum = 0;
+        for (std::size_t c = i; c < i + 3; ++c) {
+            const float all = film.variance[c];
+            const float within = varianceWithinHalves(all, film.difference[c], film.mean[i + 3]);
+            if (all > 0) sum += 2 * variance[c] / all * within / 3;
+        }
         const float v = std::isfinite(sum) ? sum : 1e30f;
         result[0].emplace_back(mean + d, v);
         result[1].emplace_back(mean - d, v);
@@ -43,9 +60,38 @@ std::vector<glm::vec4> texels(const std::vector<float>& values) {
     return result;
 }
 
+/** The filtered picture's error, see denoise.hpp. With e the mean's error, f the filtered one's and s the
+ * strength, a pixel's term is off by
+ *
+ *     (1 - 2 s) (d^2 - e^2) + 2 s (D d - e f),
+ *
+ * whose variance is 4 sigma^4 (1 - 2 s)^2, of which 4/3 d^4 is an estimate, and about 4 s^2 sigma^2 (D^2 +
+ * f^2). Channels count as if they erred alike. Terms hold gain, change^2, d^2 and D^2. */
+ErrorEstimate measuredError(const std::vector<glm::vec4>& picture, const std::vector<glm::vec4>& terms,
+                            bool reliable) {
+    ErrorEstimate result;
+    const double pixels = double(terms.size());
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const double s = picture[i].w;
+        result.relmse += (terms[i].z - 2 * s * terms[i].x + s * s * terms[i].y) / pixels;
+    }
+    result.relmse = std::max(result.relmse, 0.0);
+    double variance = 0;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const double s = picture[i].w, d2 = terms[i].z, rest = 1 - 2 * s;
+        variance += 4.0 / 3 * rest * rest * d2 * d2 + 4 * s * s * d2 * (terms[i].w + result.relmse);
+    }
+    const double doubt = 1.96 * std::sqrt(variance) / pixels + modelDoubt * result.relmse;
+    result.low = std::max(0.0, result.relmse - doubt);
+    result.high = result.relmse + doubt;
+    result.reliable = reliable && result.relmse > 0 && doubt <= farthestBound * result.relmse;
+    return result;
+}
+
 }  // namespace
 
-Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& guides) {
+Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& guides,
+                 const ErrorEstimate& before) {
     const std::array<std::uint32_t, 2> size = {film.width, film.height};
     const std::size_t pixels = std::size_t(film.width) * film.height;
     assert(guides.geometry.size() == pixels && guides.albedo.size() == pixels);
@@ -109,12 +155,10 @@ Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& gu
     result.picture = readPicture.wait(execution);
     const std::vector<glm::vec4> term = readTerms.wait(execution);
     for (std::size_t i = 0; i < pixels; ++i) {
-        const double s = result.picture[i].w;
         result.undenoised += double(term[i].z) / double(pixels);
-        result.relmse += (term[i].z - 2 * s * term[i].x + s * s * term[i].y) / double(pixels);
-        result.strength += s / double(pixels);
+        result.strength += double(result.picture[i].w) / double(pixels);
     }
-    result.relmse = std::max(result.relmse, 0.0);
+    result.error = measuredError(result.picture, term, before.reliable);
     result.timings = plan.timings(execution);
     return result;
 }

@@ -34,14 +34,16 @@ struct DenoiseGuides {
 
 struct Denoised {
     std::vector<glm::vec4>
-        picture;  ///< R G B, and s: 0 where the pixel was left as it is, 1 where it is filtered
-    /** Measured relMSE, and that of the picture before by the same measure. */
-    double relmse = 0, undenoised = 0;
-    double strength = 0;  ///< mean of s
+        picture;            ///< R G B, and s: 0 where the pixel was left as it is, 1 where it is filtered
+    ErrorEstimate error;    ///< measured
+    double undenoised = 0;  ///< relMSE of the picture before by the same measure
+    double strength = 0;    ///< mean of s
     std::vector<PassTiming> timings;
 };
 
-/** Filters a film's picture. Guides must have the film's size. Pixels without samples in both halves stay. */
-Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& guides);
+/** Filters a film's picture, whose error is `before`. Guides must have the film's size. Pixels without
+ * samples in both halves stay. */
+Denoised denoise(Device& device, const FilmImages& film, const DenoiseGuides& guides,
+                 const ErrorEstimate& before);
 
 }  // namespace helio

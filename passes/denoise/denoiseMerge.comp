@@ -10,7 +10,7 @@ layout(binding = 3) uniform samplerBuffer uDifference;  // R G B, 1 where both h
 layout(binding = 6) uniform samplerBuffer uWeights;     // of squares in relMSE
 layout(binding = 4, rgba32f) writeonly uniform image2D uMerged;
 layout(binding = 5, rgba32f) writeonly uniform image2D uScores;  // d^2 - D d, (F - M)^2, each over brightness
-layout(binding = 7, rgba32f) writeonly uniform image2D uTerms;   // the same and d^2, as parts of relMSE
+layout(binding = 7, rgba32f) writeonly uniform image2D uTerms;   // the same, d^2 and D^2, as parts of relMSE
 
 layout(push_constant) uniform Parameters {
     ivec2 size;
@@ -32,7 +32,8 @@ void main() {
     vec3 bounded = 1.0 / (3.0 * (max(mean * mean, merged * merged) + REGULARIZER));
     vec3 gain = d * (d - filteredDifference), square = change * change;
     vec4 scores = vec4(dot(bounded, gain), dot(bounded, square), 0.0, 0.0);
-    vec4 terms = vec4(dot(weight, gain), dot(weight, square), dot(weight, d * d), 0.0);
+    vec4 terms = vec4(dot(weight, gain), dot(weight, square), dot(weight, d * d),
+                      dot(weight, filteredDifference * filteredDifference));
     bool usable = difference.w > 0.0 && all(lessThan(abs(scores) + abs(terms), vec4(1e30))) &&
                   all(lessThan(abs(merged), vec3(1e30)));
     imageStore(uMerged, pixel, vec4(usable ? merged : mean, 0.0));

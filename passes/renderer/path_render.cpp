@@ -201,11 +201,11 @@ void addDenoised(Device& device, const FilmImages& film, const FirstHits& hits, 
         guides.geometry.emplace_back(hits.normal[i], hits.depth[i]);
         guides.albedo.emplace_back(hits.albedo[i], hits.instance[i] >= 0 ? 1.0f : 0.0f);
     }
-    const Denoised denoised = denoise(device, film, guides);
+    const Denoised denoised = denoise(device, film, guides, job.result.error);
     Frame frame(film.width, film.height);
     frame.add({"R", "G", "B"}, &denoised.picture.data()->x, 4);
     frame.add({"strength"}, &denoised.picture.data()->x, 4, 3);
-    job.result.denoised = {frame.image(), denoised.relmse, denoised.undenoised, denoised.strength};
+    job.result.denoised = {frame.image(), denoised.error, denoised.undenoised, denoised.strength};
     job.addTimings(denoised.timings);
 }
 

@@ -49,7 +49,10 @@ std::string RenderResult::json() const {
     if (!counters.empty()) statistics["counters"] = work;
     if (denoised) {
         statistics["denoised"] = {{"biased", true},
-                                  {"relmse", denoised->relmse},
+                                  {"relmse", denoised->error.relmse},
+                                  {"low", denoised->error.low},
+                                  {"high", denoised->error.high},
+                                  {"reliable", denoised->error.reliable},
                                   {"undenoised_relmse", denoised->undenoised},
                                   {"strength", denoised->strength}};
     }
@@ -87,15 +90,15 @@ std::string RenderResult::json() const {
 
 namespace {
 
-void addMetadata(ImageF& image, const RenderResult& result) {
+void addMetadata(ImageF& image, const RenderResult& result, const ErrorEstimate& error) {
     image.metadata["scene"] = result.scene;
     image.metadata["seed"] = std::int64_t(result.seed);
     image.metadata["samples"] = std::int64_t(result.samples);
     image.metadata["seconds"] = result.seconds;
-    image.metadata["error"] = result.error.relmse;
-    image.metadata["errorLow"] = result.error.low;
-    image.metadata["errorHigh"] = result.error.high;
-    image.metadata["errorReliable"] = std::int64_t(result.error.reliable);
+    image.metadata["error"] = error.relmse;
+    image.metadata["errorLow"] = error.low;
+    image.metadata["errorHigh"] = error.high;
+    image.metadata["errorReliable"] = std::int64_t(error.reliable);
     image.metadata["device"] = result.device;
     image.metadata["version"] = result.version;
 }
@@ -117,7 +120,7 @@ std::array<float, 3> falseColor(double relative) {
 
 void save(const std::filesystem::path& file, const RenderResult& result, const Display& display) {
     ImageF image = result.image;
-    addMetadata(image, result);
+    addMetadata(image, result, result.error);
     saveImage(file, image, {display.exposure + result.exposure, display.curve});
 }
 
@@ -126,10 +129,7 @@ void saveDenoised(const std::filesystem::path& file, const RenderResult& result,
         throw InputError(file.string(), "", "there is no denoised image",
                          "render with RenderOptions::denoise");
     ImageF image = result.denoised->image;
-    addMetadata(image, result);
-    // What is told of the picture before says nothing of this one.
-    for (const char* name : {"errorLow", "errorHigh", "errorReliable"}) image.metadata.erase(name);
-    image.metadata["error"] = result.denoised->relmse;
+    addMetadata(image, result, result.denoised->error);
     image.metadata["errorBefore"] = result.denoised->undenoised;
     image.metadata["denoised"] = std::string("biased: filtered over space");
     saveImage(file, image, {display.exposure + result.exposure, display.curve});
@@ -139,7 +139,7 @@ void saveErrorMap(const std::filesystem::path& file, const RenderResult& result)
     ImageF image = result.errorMap;
     if (image.data.empty())
         throw InputError(file.string(), "", "there is no error map", "render with RenderOptions::errorMap");
-    addMetadata(image, result);
+    addMetadata(image, result, result.error);
     if (file.extension() != ".exr" && file.extension() != ".EXR") {
         for (std::size_t i = 0; i < image.data.size(); i += 3) {
             double square = 0;

@@ -39,6 +39,12 @@ void printSkipped(const Scene& scene, const RenderResult& result) {
     if (!unneeded.empty()) printLine("unneeded {}", unneeded);
 }
 
+std::string describe(const ErrorEstimate& error) {
+    return error.reliable
+               ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})", error.relmse, error.low, error.high)
+               : fmt::format("{:.3g} (not reliable)", error.relmse);
+}
+
 void printSummary(const RenderArguments& arguments, const Scene& scene, const RenderResult& result) {
     if (arguments.outputs.empty()) printLine("no -o FILE was given: no image was written");
     printLine("device   {}", result.device);
@@ -49,14 +55,10 @@ void printSummary(const RenderArguments& arguments, const Scene& scene, const Re
         const double total = double(rays.camera + rays.bounce + rays.shadow);
         printLine("rays     {:.3g} M, {:.2f} M/s", total * 1e-6,
                   result.seconds > 0 ? total * 1e-6 / result.seconds : 0.0);
-        const ErrorEstimate& error = result.error;
-        printLine("error    relMSE {}", error.reliable
-                                            ? fmt::format("{:.3g} (95 % interval {:.3g} to {:.3g})",
-                                                          error.relmse, error.low, error.high)
-                                            : fmt::format("{:.3g} (not reliable)", error.relmse));
+        printLine("error    relMSE {}", describe(result.error));
         if (result.denoised) {
-            printLine("denoised relMSE {:.3g}, {:.3g} before (biased; measured by halves)",
-                      result.denoised->relmse, result.denoised->undenoised);
+            printLine("denoised relMSE {}, biased; {:.3g} before by the same measure",
+                      describe(result.denoised->error), result.denoised->undenoised);
         }
         if (result.radiosity) {
             const RenderResult::Radiosity& radiosity = *result.radiosity;

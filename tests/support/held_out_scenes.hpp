@@ -23,7 +23,8 @@ namespace helio::test {
  *   sunlit   an environment image with a sun of two texels, and a glossy ball
  * and, where no interval can be trusted,
  *   stars    24 lamps in view from a twentieth of a pixel to two across
- *   aquarium a glass sphere under a wide lamp: a broad caustic */
+ *   aquarium a glass sphere under a wide lamp: a broad caustic
+ * and those of unseen_scenes.hpp: studio, parlour, bazaar, frost, portico. */
 const std::map<std::string, Scene (*)()>& heldOutScenes();
 
 }  // namespace helio::test

@@ -23,7 +23,7 @@ Denoised SceneFilms::denoised(const FilmImages& film) {
             guides_.albedo.emplace_back(hits.albedo[i], hits.instance[i] >= 0 ? 1.0f : 0.0f);
         }
     }
-    return denoise(device_, film, guides_);
+    return denoise(device_, film, guides_, estimateError(film));
 }
 
 void SceneFilms::trace(std::uint32_t begin, std::uint32_t end, const SampleAllocation* allocation) {

@@ -270,9 +270,10 @@ struct RenderResult {
      * the two halves of the samples show that filtering would harm, a pixel stays as it was. */
     struct Denoised {
         ImageF image;  ///< R G B, and `strength`: 0 for a pixel left as it was, 1 for one that is filtered
-        /** Measured by the halves: relMSE of this image (low, since the filter's strength was chosen by the
-         * same samples), and of the one before. */
-        double relmse = 0, undenoised = 0;
+        /** Measured by the halves: that of this image, reliable where that of the image before is and the
+         * interval ends within a factor of 1.4 of the estimate. */
+        ErrorEstimate error;
+        double undenoised = 0;  ///< relMSE of the image before, by the same measure
         double strength = 0;  ///< mean over the pixels
     };
     std::optional<Denoised> denoised;

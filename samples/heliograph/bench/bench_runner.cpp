@@ -42,6 +42,7 @@ RenderOptions referenceOptions(const BenchCase& measured, const BenchSettings& s
 
 Json describe(const RenderResult& result, const PictureError& error, std::uint32_t samples,
               std::uint32_t seed) {
+    const ErrorEstimate& estimate = result.denoised ? result.denoised->error : result.error;
     return {{"samples", samples},
             {"seed", seed},
             {"seconds", result.seconds},
@@ -50,10 +51,10 @@ Json describe(const RenderResult& result, const PictureError& error, std::uint32
             {"rays", result.rays.camera + result.rays.bounce + result.rays.shadow},
             {"mse", error.mse},
             {"relmse", error.relmse},
-            {"estimate", result.denoised ? result.denoised->relmse : result.error.relmse},
-            {"low", result.error.low},
-            {"high", result.error.high},
-            {"reliable", result.error.reliable}};
+            {"estimate", estimate.relmse},
+            {"low", estimate.low},
+            {"high", estimate.high},
+            {"reliable", estimate.reliable}};
 }
 
 }  // namespace

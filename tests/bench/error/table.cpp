@@ -27,7 +27,14 @@ std::vector<TableRow> measureRows(Device& device, const Scene& scene,
             row.denoised += after / options.seeds;
             row.worst = std::max(row.worst, (after - residual) / (before - residual));
             row.plainMeasured += denoised.undenoised / options.seeds;
-            row.denoisedMeasured += denoised.relmse / options.seeds;
+            row.denoisedMeasured += denoised.error.relmse / options.seeds;
+            if (denoised.error.reliable) {
+                const double left = after - residual;
+                ++row.reliable;
+                row.held += denoised.error.low <= left && left <= denoised.error.high;
+                row.farthest =
+                    std::max({row.farthest, denoised.error.relmse / left, left / denoised.error.relmse});
+            }
             row.adaptive += relativeError(adaptive.render(count, seed), truth) / options.seeds;
         }
         row.plain -= residual;

@@ -19,7 +19,9 @@ struct TableOptions {
 struct TableRow {
     double plain = 0, adaptive = 0, denoised = 0;
     double worst = 0;                                ///< largest denoised / plain of a seed
-    double plainMeasured = 0, denoisedMeasured = 0;  ///< Denoised::undenoised, relmse
+    double plainMeasured = 0, denoisedMeasured = 0;  ///< Denoised::undenoised, error
+    std::uint32_t reliable = 0, held = 0;            ///< denoised ones; of these, true error in the interval
+    double farthest = 1;  ///< of the reliable ones, the largest factor between measured and true error
 };
 
 /** Renders plainly and otherwise under every seed, for each number of samples. The truth is a plain picture

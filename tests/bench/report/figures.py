@@ -30,6 +30,8 @@ TABLES = {
     "raster": ("Rasterizer beside the graphics pipeline", "cmake --build BUILD --target bench_raster && "
                                                           "BUILD/tests/bench/raster/bench_raster --rounds 21"),
     "loading": ("Loading beside assimp", "RUNS=1 tests/bench/loading/loading.sh BUILD"),
+    "denoise": ("Denoised pictures", "cmake --build BUILD --target bench_error && "
+                                     "BUILD/tests/bench/error/bench_error table --seeds 6 --reference 2048"),
     "materials": ("Materials as they are added", "cmake --build BUILD --target bench_materials && "
                                                  "tests/bench/materials/run.sh BUILD"),
 }
