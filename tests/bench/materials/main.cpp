@@ -1,7 +1,7 @@
 /** @file
  * The spheres of sample:gallery with its first material on all of them, then with its first two, and so on:
- * size of the path tracer's kernel, time to set up (compiling it twice over, to SPIR-V and to the device's
- * code), samples over time. First row: diffuse surfaces alone.
+ * size of the path tracer's kernel, CPU time to set up (compiling it twice over, to SPIR-V and to the
+ * device's code), samples over CPU time. First row: diffuse surfaces alone.
  */
 #include "passes/scene/material_layout.hpp"
 
@@ -54,8 +54,8 @@ std::size_t kernelBytes(std::uint32_t features) {
 
 int main(int count, char** arguments) {
     const std::uint32_t samples = count > 1 ? std::uint32_t(std::atoi(arguments[1])) : 64;
-    fmt::print("{:>9}  {:18} {:>12} {:>9} {:>12}\n", "materials", "the last", "SPIR-V bytes", "set-up s",
-               "Msamples/s");
+    fmt::print(
+        "| materials | the last | SPIR-V, kB | set-up, CPU s | Msamples / CPU s |\n|---|---|---|---|---|\n");
     for (std::size_t materials = 0; materials <= 15; ++materials) {
         Scene scene = load("sample:gallery");
         const std::string name = limitMaterials(scene, materials);
@@ -67,12 +67,12 @@ int main(int count, char** arguments) {
         double best = 0, setup = 0;
         for (int run = 0; run < 3; ++run) {
             const RenderResult result = renderer.render(scene, options);
-            if (run == 0) setup = result.setupSeconds;
-            best =
-                std::max(best, double(options.size[0]) * options.size[1] * samples / result.seconds * 1e-6);
+            if (run == 0) setup = result.setupCpuSeconds;
+            best = std::max(
+                best, double(options.size[0]) * options.size[1] * samples / result.renderCpuSeconds * 1e-6);
         }
-        fmt::print("{:9}  {:18} {:12} {:9.2f} {:12.3f}\n", materials, name, kernelBytes(featuresOf(scene)),
-                   setup, best);
+        fmt::print("| {} | {} | {:.0f} | {:.2f} | {:.3f} |\n", materials, name,
+                   1e-3 * double(kernelBytes(featuresOf(scene))), setup, best);
         std::fflush(stdout);
     }
 }
