@@ -26,7 +26,7 @@ std::uint64_t cellCount(std::uint32_t width, std::uint32_t height) {
 }
 
 /** As slotsOf() in shaders/raster/bin.glsl, of all cells. */
-std::uint64_t slotCount(std::uint32_t width, std::uint32_t height) {
+std::uint64_t cellSlots(std::uint32_t width, std::uint32_t height) {
     constexpr std::uint64_t tileSlots = 128, mostSlots = 2048, slotTiles = 32768;
     std::uint64_t slots = 0;
     for (int level = 0; level < kCellLevels; ++level) {
@@ -54,7 +54,7 @@ RasterPasses::RasterPasses(Graph& graph, const RasterTriangles& triangles,
     if (target.clusters) batch_ = std::max(batch_ / kSetupTriangles, 1u) * kSetupTriangles;
     const std::uint32_t width = view_->width, height = view_->height;
     const std::uint64_t cells = cellCount(width, height);
-    const std::uint64_t slots = slotCount(width, height);
+    const std::uint64_t slots = cellSlots(width, height);
     const std::uint64_t records = std::uint64_t(batch_) * kClipParts;
     // No record may need more entries than there are cells; and each must find room for at least one.
     entries_ =

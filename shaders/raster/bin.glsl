@@ -76,7 +76,7 @@ int levelStart(ivec2 size, int level) {
 }
 
 /// Slots of a cell: as many for a pixel at the next levels, up to a limit; none in images so large that they would be
-/// many. As slotCount() in raster_passes.cpp.
+/// many. As cellSlots() in raster_passes.cpp.
 uint slotsOf(ivec2 size, int level) {
     ivec2 tiles = levelCells(size, 0);
     return tiles.x * tiles.y <= SLOT_TILES ? min(TILE_SLOTS << (4 * level), MOST_SLOTS) : 0u;
