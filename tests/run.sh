@@ -10,7 +10,7 @@ cmake/install-packages.sh build test
 jobs=$(nproc)
 build() {  # build FOLDER cmake-arguments...
     local folder=$1; shift
-    cmake -S . -B "$folder" -G Ninja --log-level=WARNING -DCMAKE_UNITY_BUILD=ON -DHELIOGRAPH_TESTS=ON "$@" >/dev/null ||
+    cmake -S . -B "$folder" -G Ninja --log-level=WARNING -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 -DHELIOGRAPH_TESTS=ON "$@" >/dev/null ||
         fail "CMake could not configure $folder; its messages are above"
     cmake --build "$folder" --parallel "$jobs" || fail "the build in $folder failed; the messages are above"
 }

@@ -18,7 +18,7 @@
 namespace helio::test {
 namespace {
 
-constexpr std::array<std::uint32_t, 2> kSize = {400, 300};
+constexpr std::array<std::uint32_t, 2> kSize = {280, 210};
 
 FirstHits firstHits(const Scene& scene, const PlacedCamera& camera) {
     const PathTraceOptions options{.size = kSize, .maxDepth = 0};

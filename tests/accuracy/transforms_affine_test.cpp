@@ -15,7 +15,7 @@ using namespace helio::shared32;
 TEST(TransformsAffine, PlaneScaleShearRotation) {
     Random random(51);
     double area = 0, closed = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const float angle = random.between(-10, 10);
         const Vec2 s(random.magnitude(-3, 3), random.magnitude(-3, 3)),
             k(random.between(-2, 2), random.between(-2, 2));
@@ -47,7 +47,7 @@ TEST(TransformsAffine, PlaneScaleShearRotation) {
 
 TEST(TransformsAffine, HomogeneousAlgebra) {
     Random random(52);
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const Vec3 p = random.vector(100), q = random.vector(100);
         const Vec4 difference = homogeneousPoint(p) - homogeneousPoint(q);
         ASSERT_EQ(difference.w, 0.f);
@@ -79,7 +79,7 @@ AffineParts randomParts(Random& random, bool shear) {
 TEST(TransformsAffine, CompositionDecompositionAndInverses) {
     Random random(53);
     double matrices = 0, parts = 0, order = 0, inverse = 0, rigid = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const AffineParts p = randomParts(random, i % 2);
         const Mat4 m = composeAffine(p);
         // Shear, scale, rotate, translate in double.
@@ -131,7 +131,7 @@ TEST(TransformsAffine, CompositionDecompositionAndInverses) {
 TEST(TransformsAffine, NormalMatrixKeepsRightAngles) {
     Random random(54);
     double worst = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const Mat3 m = linearPart(composeAffine(randomParts(random, true)));
         const Vec3 n = random.direction();
         const Vec3 t = anyPerpendicular(n);
@@ -148,7 +148,7 @@ TEST(TransformsAffine, NormalMatrixKeepsRightAngles) {
 TEST(TransformsAffine, ViewMatrix) {
     Random random(55);
     double orthonormal = 0, atEye = 0, against = 0, gazeError = 0, upError = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const Vec3 eye = random.vector(10);
         const Vec3 gaze = random.direction() * std::fabs(random.magnitude(-3, 3));
         Vec3 up = random.direction() * std::fabs(random.magnitude(-3, 3));

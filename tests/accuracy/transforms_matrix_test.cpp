@@ -18,7 +18,7 @@ double worstInverse(std::uint32_t seed, double& worstDeterminant) {
     Random random(seed);
     double worst = 0;
     worstDeterminant = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         M m = random.matrix<M>();
         if (i % 2) {  // last column near the span of the others
             const float closeness = std::ldexp(1.f, -static_cast<int>(random.between(1, 15)));
@@ -83,7 +83,7 @@ TEST(TransformsMatrix, HilbertMatrices) {
 TEST(TransformsMatrix, ProductsAndTransposes) {
     Random random(33);
     double product = 0, transposed = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const Mat4 a = random.matrix<Mat4>(), b = random.matrix<Mat4>();
         const auto ea = toEigen(a), eb = toEigen(b);
         const double scale = ea.norm() * eb.norm();

@@ -27,7 +27,7 @@ Window randomWindow(Random& random, int i) {
 TEST(TransformsProjection, OrthographicCorners) {
     Random random(61);
     double cube = 0, vulkan = 0, reference = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const Window w = randomWindow(random, i);
         const Mat4 m = cubeOrthographic(w.l, w.r, w.b, w.t, -w.near, -w.far);
         const Mat4 v = orthographic(w.l, w.r, w.b, w.t, w.near, w.far);
@@ -66,7 +66,7 @@ TEST(TransformsProjection, OrthographicCorners) {
 TEST(TransformsProjection, SquishFixesThePlanesAndMovesTheMiddleToFar) {
     Random random(62);
     double worst = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const float n = -std::fabs(random.magnitude(-4, 4)), f = n * (1 + std::fabs(random.magnitude(-1, 8)));
         const Mat4 m = cubeSquish(n, f);
         const Vec3 p(random.between(-1, 1), random.between(-1, 1), 0);
@@ -93,7 +93,7 @@ TEST(TransformsProjection, SquishFixesThePlanesAndMovesTheMiddleToFar) {
 TEST(TransformsProjection, PerspectiveCorners) {
     Random random(63);
     double cube = 0, chain = 0, vulkan = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const Window w = randomWindow(random, i);
         const Mat4 m = cubePerspective(w.l, w.r, w.b, w.t, -w.near, -w.far);
         const Mat4 reversed = frustum(w.l, w.r, w.b, w.t, w.near, w.far);
@@ -141,7 +141,7 @@ TEST(TransformsProjection, PerspectiveCorners) {
 TEST(TransformsProjection, FieldsOfView) {
     Random random(64);
     double worst = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const float fov = random.between(0.001, 3.1), aspect = random.between(0.2, 5),
                     near = std::fabs(random.magnitude(-9, 9));
         const Vec2 extents = frustumExtents(fov, aspect, near);
@@ -187,7 +187,7 @@ TEST(TransformsProjection, ReversedInfiniteDepthKeepsRelativeDistance) {
 TEST(TransformsProjection, ModelViewProjectionChain) {
     Random random(65);
     double worst = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         AffineParts parts;
         parts.translation = random.vector(3);
         parts.rotation = quaternionAbout(random.direction(), random.between(-3, 3));

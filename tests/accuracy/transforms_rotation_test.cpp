@@ -23,7 +23,7 @@ Matrix3d eulerReference(const Vec3& a) {
 TEST(TransformsRotation, AboutTheAxes) {
     Random random(41);
     double worst = 0, defect = 0, sum = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         const float a = i % 2 ? random.between(-7, 7) : random.magnitude(-30, 15);
         worst = std::max({worst,
                           maxDifference(toEigen(rotationX(a)),
@@ -48,7 +48,7 @@ TEST(TransformsRotation, AboutTheAxes) {
 TEST(TransformsRotation, EulerAnglesThereAndBack) {
     Random random(42);
     double built = 0, defect = 0, angles = 0, matrices = 0;
-    for (int i = 0; i < 300'000; ++i) {
+    for (int i = 0; i < series(300'000); ++i) {
         Vec3 a(random.between(-3.14, 3.14), random.between(-1.4, 1.4), random.between(-3.14, 3.14));
         const Mat3 r = rotationEuler(a);
         built = std::max(built, maxDifference(toEigen(r), eulerReference(a)));
@@ -92,7 +92,7 @@ Matrix3d exponential(const Vector3d& n, double alpha) {
 TEST(TransformsRotation, Rodrigues) {
     Random random(43);
     double worst = 0, defect = 0, trace = 0, axisMoves = 0, quaternion = 0, back = 0;
-    for (int i = 0; i < 100'000; ++i) {
+    for (int i = 0; i < series(100'000); ++i) {
         const Vec3 axis = random.direction() * std::fabs(random.magnitude(-60, 60));  // any length
         float angle = random.between(-3.2, 3.2);
         if (i % 4 == 0) angle = 1e-7f * std::fabs(random.magnitude(0, 10));
@@ -131,7 +131,7 @@ TEST(TransformsRotation, Rodrigues) {
 TEST(TransformsRotation, QuaternionProductRotateAndSlerp) {
     Random random(44);
     double product = 0, rotate = 0, slerp = 0;
-    for (int i = 0; i < 200'000; ++i) {
+    for (int i = 0; i < series(200'000); ++i) {
         const Vec4 a = quaternionAbout(random.direction(), random.between(-3, 3));
         const Vec4 b =
             i % 3 ? quaternionAbout(random.direction(), random.between(-3, 3))

@@ -1,6 +1,7 @@
 #pragma once
 /** @file What the transform tests share: GLM to Eigen in double, norms, random matrices. */
 #include "engine/core/shared.hpp"
+#include "tests/support/sanitized.hpp"
 
 #include <Eigen/Dense>
 #include <random>

@@ -1,3 +1,4 @@
+#include "tests/support/sanitized.hpp"
 #include "tests/unit/gltf_support.hpp"
 
 #include <functional>
@@ -364,12 +365,13 @@ TEST_F(Gltf, RefusesBrokenGlbHeaders) {
 TEST_F(Gltf, SurvivesAnyValueInAnyPlace) {
     const json whole = everything(png(1, 1, 1)).withInlineBuffer();
     const std::vector<json>& odd = oddValues();
-    int loaded = 0, refused = 0;
+    int loaded = 0, refused = 0, turn = 0;
     const json flat = whole.flatten();
     for (const auto& [pointer, value] : flat.items()) {
         for (json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
             const bool isLeaf = at.to_string() == pointer;
             for (std::size_t i = 0; i < std::size(odd); i += isLeaf ? 1 : 4) {
+                if (test::kSanitized && ++turn % 4 != 0) continue;
                 json document = whole;
                 document[at] = odd[i];
                 try {
@@ -384,8 +386,8 @@ TEST_F(Gltf, SurvivesAnyValueInAnyPlace) {
             }
         }
     }
-    EXPECT_GT(refused, 1000);
-    EXPECT_GT(loaded, 100);
+    EXPECT_GT(refused, test::kSanitized ? 250 : 1000);
+    EXPECT_GT(loaded, test::kSanitized ? 25 : 100);
 }
 
 /** Flips bytes of a GLB, in its JSON and in its data. */

@@ -1,3 +1,4 @@
+#include "tests/support/sanitized.hpp"
 #include "tests/unit/gltf_support.hpp"
 
 #include <sys/stat.h>
@@ -130,7 +131,7 @@ TEST_F(Gltf, LongStringsAreReadInPlace) {
 }
 
 TEST_F(Gltf, ManyNodesThatSaySomethingLoad) {
-    constexpr int count = 250000;
+    constexpr int count = test::series(250000);
     std::string nodes, roots;
     for (int i = 0; i < count; ++i) {
         nodes += (i == 0 ? "{\"mesh\":0,\"translation\":[" : ",{\"mesh\":0,\"translation\":[") +
