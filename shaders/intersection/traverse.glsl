@@ -246,10 +246,11 @@ void visitNode(inout Traversal t) {
     t.descending = t.group != 0u;
 }
 
-/** Tests the next triangle of the queue; where `any` is set, any hit ends the ray. */
+/** Tests the next triangle of the queue, if there is one; where `any` is set, any hit ends the ray. */
 void visitTriangle(inout Traversal t, const bool any) {
+    const bool waits = t.leafMask != 0u;
     const uint lower = (t.leafMask & -t.leafMask) - 1u;
-    const int candidate = int(t.leafBase) + bitCount(t.leafAll & lower);
+    const int candidate = waits ? int(t.leafBase) + bitCount(t.leafAll & lower) : 0;
     t.leafMask &= t.leafMask - 1u;
     const uvec4 first = texelFetch(uTriangles, candidate * 3);
 #ifdef MOTION_KEYS
@@ -298,7 +299,7 @@ void visitTriangle(inout Traversal t, const bool any) {
     const bool before = g < t.g;
 #endif
     hit = hit && (isNearer(distance, t.nearest) || (!any && distance == t.nearest && before));
-    hit = hit && counts;
+    hit = hit && counts && waits;
     if (any) hit = hit && (g < t.target.x || g > t.target.y);
     t.nearest = hit ? distance : t.nearest;
     t.slot = hit ? slot : t.slot;
@@ -374,7 +375,11 @@ void takeTurn(inout Traversal t, const bool any) {
         t.leafBase = t.nextBase;
         t.nextMask = 0u;
     }
+#if defined(SHAPES) || defined(INSTANCES)
     if (t.leafMask != 0u) visitTriangle(t, any);
+#else
+    visitTriangle(t, any);  // a condition here has lavapipe mask each of its results a second time
+#endif
 }
 
 /** Finds the triangle nearest along the ray within (0, nearest), or, where `any` is set, any one. `nearest`
