@@ -341,15 +341,10 @@ PathTraceOptions pathTraceOptions(const RenderOptions& options, const ShutterTim
     return result;
 }
 
-/** Directions to lights where camera rays arrive. Surroundings light most of what is seen of a scene from
- * outside its box, and nearly all of its noise is of the direction asked there: four directions take .4 to .9
- * of the time of one to equal error (eight .5 to 1.1). Within a room, where most light comes by walls, they
- * would take 1.8 of it. */
-std::uint32_t lightSamples(const PreparedScene& scene, const View& view) {
-    const glm::dvec3 eye(view.transform[3]);
-    const bool outside = glm::any(glm::lessThan(eye, scene.bounds.lower)) ||
-                         glm::any(glm::greaterThan(eye, scene.bounds.upper));
-    return scene.deviceScene.hasEnvironmentImage() && outside ? 4 : 1;
+std::uint32_t lightSamples(const DeviceScene& scene, const Scene::Bounds& bounds, const glm::dvec3& eye) {
+    const bool outside =
+        glm::any(glm::lessThan(eye, bounds.lower)) || glm::any(glm::greaterThan(eye, bounds.upper));
+    return scene.hasEnvironmentImage() && outside ? 4 : 1;
 }
 
 void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTarget& target, RenderJob& job,
@@ -358,7 +353,7 @@ void renderPaths(Device& device, PreparedScene& scene, const View& view, FilmTar
     target.clear();
     PathTraceOptions traceOptions = pathTraceOptions(job.options, view.shutter);
     traceOptions.cameraPoses = view.poses;
-    traceOptions.lightSamples = lightSamples(scene, view);
+    traceOptions.lightSamples = lightSamples(scene.deviceScene, scene.bounds, glm::dvec3(view.transform[3]));
     std::optional<RadiosityPass> radiosity;
     if (patches) {
         radiosity.emplace(device, scene.deviceScene, std::move(*patches));

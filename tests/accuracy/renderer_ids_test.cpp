@@ -120,8 +120,9 @@ void expectAgreement(Renderer& renderer, const Scene& scene, std::array<std::uin
 
 TEST(PipelineAgreement, OfIdsOnTheSamples) {
     Renderer renderer(test::deviceOptions());
-    for (const std::string& name : sampleNames())
-        expectAgreement(renderer, load("sample:" + name), {160, 120});
+    for (const char* name :
+         {"cornell", "gallery", "instances", "lenses", "plates", "shading", "terrain", "wheel"})
+        expectAgreement(renderer, load(std::string("sample:") + name), {160, 120});
 }
 
 void expectAgreementOnAsset(const char* name) {

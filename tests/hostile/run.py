@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Opens every malformed file with the program. Each must end in exit 1 with one line that names the file, the
 fault and the remedy, or load: then both pipelines must render it with finite pixels and say in a warning, or in
-what was left out, that something is wrong. Memory stays within twice the file and 256 MiB, all told with info,
+what was left out, that something is wrong. With --turns (the test suite) every other file is rendered by one pipeline
+alone, in turn. Memory stays within twice the file and 256 MiB, all told with info,
 and with render beyond what it takes for a small good file (the device's compiler and kernels); 20 s is a hang.
 Large good files are held to the same.
-  tests/hostile/run.py BUILD [--keep FOLDER] [--only PART] [--list]
+  tests/hostile/run.py BUILD [--keep FOLDER] [--only PART] [--list] [--turns]
 """
 import argparse
 import collections
@@ -18,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import good_files
@@ -34,6 +36,7 @@ parser.add_argument("build")
 parser.add_argument("--keep", help="leave the files in this folder")
 parser.add_argument("--only", default="", help="cases whose name has this in it")
 parser.add_argument("--list", action="store_true", help="print what becomes of each case")
+parser.add_argument("--turns", action="store_true", help="every other file is rendered by one pipeline alone")
 arguments = parser.parse_args()
 program = str(pathlib.Path(arguments.build).resolve() / "samples/heliograph/heliograph")
 
@@ -126,7 +129,9 @@ def check(case):
     if info.code != 0:
         return name, "failed", info.err.strip(), faults + ["exit %d: %s" % (info.code, info.err[-300:])]
     said, refusal = [], None
-    for pipeline in ("path", "raster"):
+    turn = zlib.crc32(name.encode()) % 4 if arguments.turns else 2
+    pipelines = ("path", "raster") if turn >= 2 else (("path", "raster")[turn],)
+    for pipeline in pipelines:
         render = run(folder, "render", file, "--size", "8x8", "--spp", "1", "--pipeline", pipeline, "-o", pipeline + ".exr",
                      "--stats", pipeline + ".json")
         hold(render, pipeline)
@@ -144,6 +149,8 @@ def check(case):
         return name, "refused", refusal, faults
     if not said and name not in malformed.GOOD:
         faults.append("renders without a word of what is wrong")
+    if len(pipelines) < 2:
+        return name, "rendered", said[0] if said else "", faults
     compare = run(folder, "compare", "path.exr", "raster.exr", "--json")
     difference = json.loads(compare.out)
     if difference["nan"] or difference["inf"]:

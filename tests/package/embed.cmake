@@ -19,7 +19,7 @@ if(MODE STREQUAL "install")
 else()
     set(type Debug)  # the quickest to build, and a configuration no other test builds
     set(from -DHELIOGRAPH_SOURCE_DIR=${SOURCE_DIR} -DHELIOGRAPH_WERROR=${WERROR} -DCMAKE_CXX_FLAGS_DEBUG=-g0
-        -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=24)
+        -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16)
     find_program(ccache ccache)
     if(ccache)
         list(APPEND from -DCMAKE_CXX_COMPILER_LAUNCHER=${ccache})

@@ -1,5 +1,7 @@
 #include "tests/support/scene_films.hpp"
 
+#include "passes/renderer/path_render.hpp"
+
 #include <algorithm>
 
 namespace helio::test {
@@ -11,6 +13,7 @@ SceneFilms::SceneFilms(Device& device, Scene scene, std::array<std::uint32_t, 2>
     options.adaptive = adaptive;
     const PlacedCamera placed = chooseCamera(scene_, {}, double(size[0]) / size[1]);
     uploaded_ = std::make_unique<DeviceScene>(device, scene_, PathTracer::packOptions(scene_, options));
+    options.lightSamples = lightSamples(*uploaded_, scene_.bounds(), glm::dvec3(placed.transform[3]));
     tracer_ = std::make_unique<PathTracer>(device, *uploaded_, scene_.cameras[std::size_t(placed.camera)],
                                            placed.transform, options, target_.film());
 }
