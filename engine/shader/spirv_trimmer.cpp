@@ -19,8 +19,8 @@ std::vector<std::uint32_t> trim(spvtools::Optimizer& optimizer, std::span<const 
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);
     std::vector<std::uint32_t> trimmed;
-    return optimizer.Run(spirv.data(), spirv.size(), &trimmed, options) ? trimmed
-                                                                        : std::vector<std::uint32_t>{};
+    if (!optimizer.Run(spirv.data(), spirv.size(), &trimmed, options)) trimmed.clear();
+    return trimmed;
 }
 
 }  // namespace

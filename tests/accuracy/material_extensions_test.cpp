@@ -153,6 +153,16 @@ protected:
                   {"roughnessFactor", roughness}}},
                 {"extensions", extensions}};
     }
+    /** A plate that light goes straight through (index 1), 0.3 thick, of a medium that absorbs. */
+    static GltfDocument absorbingPlate() {
+        return plate(material(Vec(1), 0, 0,
+                              {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
+                               {"KHR_materials_ior", {{"ior", 1.0}}},
+                               {"KHR_materials_volume",
+                                {{"thicknessFactor", 0.3},
+                                 {"attenuationDistance", 0.5},
+                                 {"attenuationColor", {0.25, 0.5, 0.9}}}}}));
+    }
     RenderResult shown(const GltfDocument& file, Pipeline pipeline, glm::vec3 surroundings = glm::vec3(0),
                        std::array<std::uint32_t, 2> size = {8, 8}, std::uint32_t samples = 4) const {
         return shown(load(file), pipeline, surroundings, size, samples);
@@ -250,13 +260,7 @@ TEST_F(MaterialExtensions, LightGoesThroughByTheirFormulas) {
         seen.x, seen.y, seen.z, drawn.x, drawn.y, drawn.z);
 
     // A second plate behind it, turned away, makes a slab 0.3 thick of a medium of index 1.
-    GltfDocument slab = plate(material(Vec(1), 0, 0,
-                                       {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
-                                        {"KHR_materials_ior", {{"ior", 1.0}}},
-                                        {"KHR_materials_volume",
-                                         {{"thicknessFactor", 0.3},
-                                          {"attenuationDistance", 0.5},
-                                          {"attenuationColor", {0.25, 0.5, 0.9}}}}}));
+    GltfDocument slab = absorbingPlate();
     slab.doc["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, -0.3}}, {"rotation", {1, 0, 0, 0}}});
     slab.doc["scenes"][0]["nodes"].push_back(3);
     const Vec truth(std::pow(0.25, 0.6), std::pow(0.5, 0.6), std::pow(0.9, 0.6));
@@ -276,13 +280,7 @@ TEST_F(MaterialExtensions, LightGoesThroughByTheirFormulas) {
 
 /** A thickness is the mesh's, so it grows with its node, and a texture's green scales it. */
 TEST_F(MaterialExtensions, ThicknessIsTheMeshsTimesItsTexture) {
-    GltfDocument file = plate(material(Vec(1), 0, 0,
-                                       {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
-                                        {"KHR_materials_ior", {{"ior", 1.0}}},
-                                        {"KHR_materials_volume",
-                                         {{"thicknessFactor", 0.3},
-                                          {"attenuationDistance", 0.5},
-                                          {"attenuationColor", {0.25, 0.5, 0.9}}}}}));
+    GltfDocument file = absorbingPlate();
     file.doc["nodes"][0]["scale"] = {2, 2, 2};
     Scene scene = load(file);
     TextureImage image;
