@@ -3,13 +3,6 @@
 #include <algorithm>
 
 namespace helio {
-namespace {
-
-DeviceBuffer perPixel(Device& device, const char* name, const RasterView& view, std::uint64_t bytes) {
-    return {device, name, std::uint64_t(view.width) * view.height * bytes};
-}
-
-}  // namespace
 
 AlphaLayers::AlphaLayers(Device& device, const RasterPipeline& raster, ShadePipeline& shade,
                          std::shared_ptr<const RasterView> view)

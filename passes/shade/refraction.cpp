@@ -11,19 +11,19 @@ std::vector<glm::uvec4> pictureHeader(const RasterView& view, bool rough) {
     return {{0u, view.width, view.height, 2u | 2u << 2 | 1u << 5 | 1u << 6}};
 }
 
-DeviceBuffer perPixelVector(Device& device, const char* name, const RasterView& view) {
-    return {device, name, std::uint64_t(view.width) * view.height * 16};
-}
-
 }  // namespace
+
+DeviceBuffer perPixel(Device& device, const char* name, const RasterView& view, std::uint64_t bytes) {
+    return {device, name, std::uint64_t(view.width) * view.height * bytes};
+}
 
 RefractionPictures::RefractionPictures(Device& device, const RasterView& view, bool refracts, bool rough)
     : refracts_(refracts),
       header_(pictureHeader(view, rough)),
       mips_(device, header_),
-      passed_(perPixelVector(device, "refraction.passed", view)),
-      behind_(perPixelVector(device, "refraction.behind", view)),
-      behindDepth_(perPixelVector(device, "refraction.behindDepth", view)),
+      passed_(perPixel(device, "refraction.passed", view, 16)),
+      behind_(perPixel(device, "refraction.behind", view, 16)),
+      behindDepth_(perPixel(device, "refraction.behindDepth", view, 16)),
       headers_(makeBuffer(device, "refraction.texture",
                           rough ? header_ : std::vector<glm::uvec4>(1, glm::uvec4(0u)))),
       none_(makeBuffer(device, "refraction.none", std::vector<std::uint32_t>(4))) {}

@@ -19,6 +19,9 @@
 
 namespace helio {
 
+/** A buffer of so many bytes for each pixel of a view. */
+DeviceBuffer perPixel(Device& device, const char* name, const RasterView& view, std::uint64_t bytes);
+
 class RefractionPictures {
 public:
     /** Refracting layers behind one another that are told apart; those behind are left out of what is seen
